@@ -14,6 +14,6 @@ pub fn subscribers() -> Subscribers {
         .on(schedule::on_terms_change)
         .on(schedule::on_vessel_event)
         .on(calendar::delete_feeds)
-        .on(notifications::create)
+        .on(notifications::create_notifications)
         .on(port_calls::note_berth_heading)
 }

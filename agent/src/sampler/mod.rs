@@ -56,8 +56,8 @@ pub(crate) struct Sampler {
     gyro: HeadingTrack,
     satellite: HeadingTrack,
     rate_of_turn: (f64, u32),
-    position: Option<(Position, i64)>,
-    speed: Option<(f64, i64)>,
+    position: Option<LastValue<Position>>,
+    speed: Option<LastValue<f64>>,
     turns: TurnTracker,
     builder: SampleBuilder,
     samples: Vec<Sample>,
@@ -117,9 +117,9 @@ impl Sampler {
             Signal::GyroInvalid => self.gyro.invalidate(),
             Signal::Satellite(heading) => self.satellite.add(heading.degrees()),
             Signal::SatelliteInvalid => self.satellite.invalidate(),
-            Signal::Position(position) => self.position = self.window.map(|w| (position, w)),
+            Signal::Position(position) => self.position = self.last_value(position),
             Signal::Speed(knots) if SPEED_KN.contains(&knots) => {
-                self.speed = self.window.map(|w| (knots, w));
+                self.speed = self.last_value(knots);
             }
             Signal::RateOfTurn(rate) if RATE_OF_TURN_DEG_MIN.contains(&rate) => {
                 self.rate_of_turn = (self.rate_of_turn.0 + rate, self.rate_of_turn.1 + 1);
@@ -233,7 +233,7 @@ impl Sampler {
         if gyro.or(satellite).is_none() {
             return Err(Outcome::NoReference);
         }
-        let position = if_fresh(self.position, index).ok_or(Outcome::NoPosition)?;
+        let position = LastValue::if_fresh(self.position, index).ok_or(Outcome::NoPosition)?;
         if is_weak(position, start_of(index)?) {
             return Err(Outcome::HighLatitude);
         }
@@ -242,7 +242,7 @@ impl Sampler {
         if !enough(&compass) || gyro.or(satellite).is_none() {
             return Err(Outcome::Sparse);
         }
-        let sog_kn = if_fresh(self.speed, index).ok_or(Outcome::NoSpeed)?;
+        let sog_kn = LastValue::if_fresh(self.speed, index).ok_or(Outcome::NoSpeed)?;
         if sog_kn < self.settings.min_sog_kn {
             return Err(Outcome::Slow);
         }
@@ -302,6 +302,12 @@ impl Sampler {
             .unwrap_or(&self.compass)
     }
 
+    /// Returns a value with the open window; `None` without one.
+    fn last_value<T>(&self, value: T) -> Option<LastValue<T>> {
+        let window = self.window?;
+        Some(LastValue { value, window })
+    }
+
     /// Returns the mean of the rate-of-turn indicator, or the change of the heading.
     fn rate_of_turn_deg_min(&self) -> Option<f64> {
         let (sum, readings) = self.rate_of_turn;
@@ -321,9 +327,19 @@ fn start_of(window: i64) -> Result<Timestamp, Outcome> {
     Timestamp::from_micros(micros).map_err(|_| Outcome::Clock)
 }
 
-fn if_fresh<T: Copy>(last: Option<(T, i64)>, index: i64) -> Option<T> {
-    let (value, at) = last?;
-    (index - at < FIX_VALID_WINDOWS).then_some(value)
+/// Last value of a signal, and the window in which it was received.
+#[derive(Clone, Copy, Debug)]
+struct LastValue<T> {
+    value: T,
+    window: i64,
+}
+
+impl<T> LastValue<T> {
+    /// Returns the value if it is recent enough for a window.
+    fn if_fresh(last: Option<LastValue<T>>, window: i64) -> Option<T> {
+        let last = last?;
+        (window - last.window < FIX_VALID_WINDOWS).then_some(last.value)
+    }
 }
 
 #[cfg(test)]

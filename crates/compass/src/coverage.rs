@@ -15,6 +15,7 @@ pub const MAGNETIC_LATITUDE_STEP_DEG: i16 = 10;
 
 /// Counts of samples by heading and magnetic latitude.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Coverage {
     /// Width of a heading sector, degrees.
     pub heading_step_deg: u16,

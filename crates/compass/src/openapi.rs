@@ -7,8 +7,10 @@ use utoipa::openapi::schema::{AdditionalProperties, AllOf, Object};
 use utoipa::openapi::{OpenApi, RefOr, Schema};
 
 /// Gives a type the schema of its written form, under a name of its own.
+///
+/// A derived schema does not register the arguments of a generic form, so they follow it.
 macro_rules! named_schema {
-    ($type:ty, $name:literal, $form:ty) => {
+    ($type:ty, $name:literal, $form:ty $(, $argument:ty)*) => {
         impl utoipa::PartialSchema for $type {
             fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
                 <$form as utoipa::PartialSchema>::schema()
@@ -24,6 +26,13 @@ macro_rules! named_schema {
                 schemas: &mut Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::Schema>)>,
             ) {
                 <$form as utoipa::ToSchema>::schemas(schemas);
+                $(
+                    schemas.push((
+                        <$argument as utoipa::ToSchema>::name().into_owned(),
+                        <$argument as utoipa::PartialSchema>::schema(),
+                    ));
+                    <$argument as utoipa::ToSchema>::schemas(schemas);
+                )*
             }
         }
     };
@@ -83,7 +92,7 @@ pub fn remove_defaults(schema: &mut Schema) {
 }
 
 /// Replaces a combination of inline objects by one object with all their properties.
-fn flatten(schema: &mut Schema) {
+pub fn flatten(schema: &mut Schema) {
     if let Schema::AllOf(parts) = schema {
         let mut whole = Object::new();
         whole.description = parts.description.take();

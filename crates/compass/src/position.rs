@@ -9,8 +9,10 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(try_from = "RawPosition", into = "RawPosition")]
 pub struct Position {
+    /// Latitude, degrees, north positive.
     #[cfg_attr(feature = "openapi", schema(rename = "lat"))]
     lat_deg: f64,
+    /// Longitude, degrees, east positive.
     #[cfg_attr(feature = "openapi", schema(rename = "lon"))]
     lon_deg: f64,
 }

@@ -10,7 +10,7 @@ use std::fmt;
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[cfg_attr(
     feature = "openapi",
-    schema(as = Time, value_type = String, format = DateTime, example = "2026-11-21T07:00:00Z")
+    schema(as = Time, description = "An instant, RFC 3339.", value_type = String, format = DateTime, example = "2026-11-21T07:00:00Z")
 )]
 #[serde(try_from = "String", into = "String")]
 pub struct Timestamp(i64);

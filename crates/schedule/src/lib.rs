@@ -18,3 +18,6 @@ pub mod input;
 pub mod plan;
 
 pub mod solve;
+
+#[cfg(feature = "openapi")]
+pub mod openapi;

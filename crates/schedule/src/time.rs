@@ -27,12 +27,12 @@ impl Instant {
         self.0.seconds_since(earlier.0) / 3600.0
     }
 
-    /// The instant `hours` later.
+    /// Returns the instant `hours` later.
     pub fn plus_hours(self, hours: f64) -> Instant {
         Instant(self.0.plus_seconds(hours * 3600.0))
     }
 
-    /// The date in UTC.
+    /// Returns the date in UTC.
     pub fn utc_date(self) -> NaiveDate {
         self.0.to_chrono().date_naive()
     }
@@ -68,12 +68,12 @@ pub struct Eur(i64);
 pub struct EurError(f64);
 
 impl Eur {
-    /// An amount of whole euros, up to 65 535.
+    /// Returns an amount of whole euros, up to 65 535.
     pub const fn whole(euros: u16) -> Eur {
         Eur(euros as i64 * 100)
     }
 
-    /// The amount in cents.
+    /// Returns the amount in cents.
     pub fn cents(self) -> i64 {
         self.0
     }

@@ -32,7 +32,7 @@ struct Known {
 #[error("{0:?} is not a time zone such as Europe/Madrid")]
 pub struct ZoneError(String);
 
-/// All zones, in the order of their names.
+/// Returns all zones, in the order of their names.
 fn all() -> &'static [Known] {
     static ALL: OnceLock<Vec<Known>> = OnceLock::new();
     ALL.get_or_init(|| {
@@ -51,7 +51,7 @@ fn all() -> &'static [Known] {
 }
 
 impl Zone {
-    /// Universal time.
+    /// Returns universal time.
     #[allow(clippy::missing_panics_doc, reason = "every database has it")]
     pub fn utc() -> Zone {
         Zone::find("UTC").expect("every time zone database has UTC")
@@ -118,19 +118,19 @@ impl Zone {
 
 /// The conversions between instants and local time.
 impl Instant {
-    /// The date in a zone.
+    /// Returns the date in a zone.
     pub fn date(self, zone: Zone) -> NaiveDate {
         zone.local(self).date()
     }
 
-    /// The instant of an hour, 0 to 24, of a day in a zone; [`Zone::instant`]
+    /// Returns the instant of an hour, 0 to 24, of a day in a zone; [`Zone::instant`]
     /// describes hours that occur twice or never.
     pub fn at(day: NaiveDate, hour: f64, zone: Zone) -> Instant {
         let since_midnight = TimeDelta::seconds((hour * 3600.0).round() as i64);
         zone.instant(day.and_time(NaiveTime::MIN) + since_midnight)
     }
 
-    /// The instant with the local time and offset of a zone.
+    /// Returns the instant with the local time and offset of a zone.
     #[allow(clippy::missing_panics_doc, reason = "no zone is a day from UTC")]
     pub fn in_zone(self, zone: Zone) -> chrono::DateTime<FixedOffset> {
         let ahead = i32::try_from(zone.ahead_s(self)).ok();
@@ -141,7 +141,7 @@ impl Instant {
     }
 }
 
-/// Clamped to the years in which jiff has instants.
+/// Returns the instant in jiff, clamped to its years.
 fn stamp(micros: i64) -> jiff::Timestamp {
     let end = if micros < 0 {
         jiff::Timestamp::MIN

@@ -14,7 +14,7 @@ fn now() -> Instant {
 fn read_csv(text: &str) -> Result<csv::Rows, FileErrors> {
     let mut faults = FileErrors::default();
     match csv::read(text.as_bytes(), None, now(), &mut faults) {
-        Ok(rows) => faults.unless(rows),
+        Ok(rows) => faults.into_result(rows),
         Err(fault) => {
             faults.push(fault);
             Err(faults)
@@ -422,5 +422,5 @@ fn a_call_that_stands_in_a_file_twice_is_refused_with_both_lines() {
     let row = "c,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n";
     let other = row.replacen(",v,", ",w,", 1);
     let said = csv_complaint(&format!("{HEADER}{row}{other}{row}"));
-    assert_eq!(said, "line 4: id: \"c\" stands on line 2 already");
+    assert_eq!(said, "line 4: id: \"c\" is already on line 2");
 }

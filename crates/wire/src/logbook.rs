@@ -23,6 +23,8 @@ const MAX_END_AHEAD_S: f64 = 366.0 * 86_400.0;
 
 /// One event, as its reporter writes it down.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = LogbookReport))]
 pub struct Report {
     /// The kind of event.
     pub kind: LogbookKind,
@@ -36,12 +38,15 @@ pub struct Report {
     pub cargo: Option<Cargo>,
     /// The hatch in which the magnetic cargo lies.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(max_length = 100, example = "2"))]
     pub hatch: Option<String>,
     /// The port, if in one.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(max_length = 100))]
     pub port: Option<String>,
     /// The reporter's own words.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(max_length = 1000, default = ""))]
     pub note: String,
 }
 

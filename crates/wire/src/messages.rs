@@ -10,8 +10,10 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use uuid::Uuid;
 
-/// `POST /api/v1/agents/enrol`: exchanges a one-time code for a token.
+/// A one-time code to be exchanged for a token: the request of `POST
+/// /api/v1/agents/enrol`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct EnrolRequest {
     /// The code shown to the operator.
     pub code: String,
@@ -19,12 +21,14 @@ pub struct EnrolRequest {
     pub agent_version: String,
 }
 
-/// The response to an enrolment: everything the agent needs to send.
+/// Everything the agent needs to send: the response to an enrolment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct EnrolAnswer {
     /// Bearer token; shown this once.
     pub token: String,
     /// A new stream, opened for this installation.
+    #[cfg_attr(feature = "openapi", schema(value_type = Uuid))]
     pub stream: StreamId,
     /// The vessel's name, for the local page.
     pub vessel_name: String,
@@ -39,6 +43,7 @@ pub struct EnrolAnswer {
 /// the request's own token. An agent stores the new token before that `PUT`,
 /// and keeps the old one until it has the response.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct NewToken {
     /// Bearer token.
     pub token: String,
@@ -50,22 +55,26 @@ impl fmt::Debug for NewToken {
     }
 }
 
-/// The response to `POST /api/v1/streams` with the agent's token, which opens a
-/// new stream for the same compass. An agent does so when its spool was lost or
-/// restored from an old copy.
+/// A new stream for the same compass: the response to `POST /api/v1/streams`.
+///
+/// An agent opens one when its spool was lost or restored from an old copy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct OpenStreamAnswer {
     /// The new stream.
+    #[cfg_attr(feature = "openapi", schema(value_type = Uuid))]
     pub stream: StreamId,
 }
 
-/// The response to `PUT /api/v1/streams/{stream}/batches/{seq}`, and to `GET
+/// Acknowledgement, and everything that the agent lacks: the response to `PUT
+/// /api/v1/streams/{stream}/batches/{seq}` and to `GET
 /// /api/v1/streams/{stream}/downlink`.
 ///
 /// Both take `?model={id}&settings={version}`, the agent's current ones. A
 /// model that this version of the program cannot read leaves the rest intact:
 /// the server may be years ahead of an agent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(from = "Received")]
 pub struct Downlink {
     /// Every batch up to and including this one is durable on the server; 0 for
@@ -139,6 +148,7 @@ pub struct UnreadModel {
 
 /// A model as sent to the bridge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ModelDownlink {
     /// The model version's id.
     pub id: Uuid,
@@ -154,14 +164,15 @@ pub struct ModelDownlink {
     pub model: Model,
 }
 
-/// Statement that earlier models no longer hold: the ship's magnetism or the
-/// compass changed.
+/// Withdrawal of earlier cards: the ship's magnetism or the compass changed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CardWithdrawn {
-    /// Time of the change.
+    /// Time of the change, from which they do not hold.
     pub since: Timestamp,
     /// The cause: a kind of logbook entry, a detected cause, or
     /// `ship_as_before`. More values may be added.
+    #[cfg_attr(feature = "openapi", schema(example = "adjustment"))]
     pub reason: String,
 }
 
@@ -189,28 +200,35 @@ impl fmt::Display for CardWithdrawn {
     }
 }
 
-/// `PUT /api/v1/agents/logbook/{id}` with the agent's token: an officer's
-/// report, complete, under an id made on board.
+/// An officer's report, complete, under an id made on board: the request of
+/// `PUT /api/v1/agents/logbook/{id}`.
 ///
 /// It may be sent until it is acknowledged: repeating it, or sending an older
 /// revision late, changes nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = BoardReport))]
 pub struct LogbookReport {
     /// Revision, from 1; rises by one with each change by the officer.
+    #[cfg_attr(feature = "openapi", schema(minimum = 1))]
     pub revision: u32,
     /// The officer's name; may be empty.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(max_length = 100, default = ""))]
     pub reporter: String,
     /// True when the officer withdraws the report.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(default = false))]
     pub withdrawn: bool,
     /// The event reported.
     #[serde(flatten)]
     pub report: Report,
 }
 
-/// The response to a [`LogbookReport`]: it is in the logbook.
+/// An officer's report in the logbook: the response to the report.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = BoardReportAnswer))]
 pub struct LogbookAnswer {
     /// The latest revision in the logbook.
     pub revision: u32,

@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 /// Settings read from JSON are always within the ranges of [`Settings::check`];
 /// code that builds its own must call it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = AgentSettings, description = "Settings of an agent's sampling and sending."))]
 #[serde(try_from = "RawSettings")]
 pub struct Settings {
     /// Version, rising with every change; 0 is the agent's built-in default.

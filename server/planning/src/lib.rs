@@ -1,17 +1,19 @@
-//! Planning of adjustments: port calls, needs, the schedule, and what people hear of it.
+//! Planning of adjustments: port calls, needs and the schedule, with calendars, notifications and
+//! reports.
 
 #![allow(
     clippy::missing_errors_doc,
-    reason = "a function that asks the database errs when that does; others say more"
+    reason = "functions fail when the database does; others document their errors"
 )]
 #![allow(
     clippy::cast_possible_wrap,
-    reason = "counts go into BIGINT and are far from its end"
+    reason = "counts are far below the limit of BIGINT"
 )]
 
 pub mod needs;
 pub mod port_calls;
 pub mod schedule;
+mod schedule_settings;
 
 pub mod calendar;
 pub mod notifications;

@@ -10,7 +10,7 @@ use utoipa::ToSchema;
 /// Instant: BIGINT microseconds in the database, RFC 3339 in JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
 #[serde(transparent)]
-#[schema(value_type = String, format = DateTime, example = "2026-11-21T07:00:00Z")]
+#[schema(description = "An instant, RFC 3339.", value_type = String, format = DateTime, example = "2026-11-21T07:00:00Z")]
 pub struct Time(pub Timestamp);
 
 impl From<Timestamp> for Time {

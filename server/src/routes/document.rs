@@ -5,6 +5,7 @@
 //! something to read.
 
 use axum::http::StatusCode;
+use binnacle_compass::openapi::{allow_unknown_properties, flatten, schema_mut};
 use std::mem;
 use utoipa::ToSchema;
 use utoipa::openapi::path::{Operation, ParameterIn};
@@ -27,6 +28,32 @@ pub(super) fn add_problem_fields<T: ToSchema>(document: &mut OpenApi) {
         panic!("the document has no problem");
     };
     problem.properties.extend(fields.properties);
+}
+
+/// Names of the server's forms that refuse unknown fields.
+const STRICT_FORMS: [&str; 4] = [
+    "VesselAmendment",
+    "CompassAmendment",
+    "LogbookAmendment",
+    "PortCallAmendment",
+];
+
+/// Corrects the schemas that are derived from types of the science crates and the server.
+///
+/// Flattened fields become fields of the object itself. A form that refuses unknown fields
+/// today may accept more of them in a later version, so the document does not rule them out.
+pub(super) fn correct_schemas(document: &mut OpenApi) {
+    binnacle_compass::openapi::correct(document);
+    binnacle_adjustment::openapi::correct(document);
+    binnacle_schedule::openapi::correct(document);
+    if let Some(coverage) = schema_mut(document, "Coverage") {
+        flatten(coverage);
+    }
+    for name in STRICT_FORMS {
+        if let Some(form) = schema_mut(document, name) {
+            allow_unknown_properties(form);
+        }
+    }
 }
 
 /// Adds the details common to all operations.

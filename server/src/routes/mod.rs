@@ -144,6 +144,7 @@ fn parts() -> (
     document.merge(more);
     document::add_problem_fields::<NoModelFields>(&mut document);
     document::add_problem_fields::<NotAdjustableFields>(&mut document);
+    document::correct_schemas(&mut document);
     document::complete(&mut document);
     let people = people
         .route("/api/openapi.json", get(docs::document))

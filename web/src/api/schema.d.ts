@@ -3092,7 +3092,7 @@ export interface components {
          */
         ActorKind: "user" | "token" | "agent" | "command";
         /**
-         * @description What would cure a refusal.
+         * @description Cure of a refusal.
          * @enum {string}
          */
         AdjustmentCure: "read_again" | "headings_at_sea" | "other_waters" | "after_discharge" | "better_magnetometer" | "another_berth" | "other_correctors" | "alignment" | "swing";
@@ -3189,7 +3189,7 @@ export interface components {
             max_rate_of_turn_deg_min: number;
             /**
              * Format: double
-             * @description Greatest swing of heading to either side within 30 s, degrees.
+             * @description The greatest swing of the heading to either side within 30 s, degrees.
              */
             max_swing_deg: number;
             /**
@@ -3199,22 +3199,22 @@ export interface components {
             min_sog_kn: number;
             /**
              * Format: int32
-             * @description The longest stretch that one sample is the mean of, seconds.
+             * @description The longest interval averaged in one sample, seconds.
              */
             sample_s: number;
             /**
              * Format: int32
-             * @description A batch is sealed when its first sample is this old, seconds.
+             * @description A batch is sealed when its first sample is this old, seconds of ship time.
              */
             seal_s: number;
             /**
              * Format: int32
-             * @description Seconds after a turn in which nothing is sampled.
+             * @description Seconds after a turn in which nothing is sampled (Gaussian error).
              */
             settle_s: number;
             /**
              * Format: int32
-             * @description Rises with every change; 0 are the defaults.
+             * @description Version, rising with every change; 0 is the agent's built-in default.
              */
             version: number;
         };
@@ -3426,32 +3426,32 @@ export interface components {
         Band: {
             /**
              * Format: double
-             * @description Root mean square.
+             * @description Root mean square, degrees.
              */
             rms_deg: number;
             /**
              * Format: double
-             * @description On the worst heading.
+             * @description Band on the worst heading, degrees.
              */
             worst_deg: number;
         };
-        /** @description A Flinders bar. */
+        /** @description Setting of a Flinders bar. */
         BarSetting: {
             /**
              * Format: double
-             * @description Length of all its pieces, mm.
+             * @description Total length of its pieces, mm.
              */
             length_mm: number;
-            /** @description Before or abaft the card. */
+            /** @description Side of the card. */
             side: components["schemas"]["BarSide"];
             /**
              * Format: double
-             * @description Degrees clockwise from there, seen from above.
+             * @description Slew, degrees clockwise from there, seen from above.
              */
             slew_deg?: number;
         };
         /**
-         * @description Before or abaft the card.
+         * @description Side of the card.
          * @enum {string}
          */
         BarSide: "forward" | "aft";
@@ -3487,7 +3487,7 @@ export interface components {
             verdict: string;
         };
         /**
-         * @description What was read at the berth; docs/plan.md has every field.
+         * @description Magnetometer reading at the berth; docs/plan.md explains every field.
          * @example {
          *       "at": "2026-11-22T08:20:00Z",
          *       "compass_deg": 310.5,
@@ -3504,26 +3504,28 @@ export interface components {
         BerthReading: {
             /**
              * Format: double
-             * @description Standard deviation of how it lies, degrees; its kind's where it is not said.
+             * @description Standard deviation of the magnetometer's alignment, degrees; by default that of the
+             *     kind.
              */
             alignment_sd_deg?: number | null;
-            /** @description When it was read. */
+            /** @description Time of the reading. */
             at: components["schemas"]["Time"];
-            /** @description Whether magnetic cargo is on board. */
+            /** @description Magnetic cargo on board that the model does not include. */
             cargo_on_board?: boolean;
             /**
              * Format: double
-             * @description What the compass read before the bowl was taken out, degrees.
+             * @description Compass heading before the bowl was taken out, degrees.
              */
             compass_deg?: number | null;
             /**
              * Format: double
-             * @description Vertical field there, down positive; without it the heeling magnets stay.
+             * @description Vertical field there, down positive, if measured; without it the heeling magnets
+             *     stay.
              */
             down?: number | null;
             /**
              * Format: double
-             * @description Its standard deviation, nT; its kind's where it is not said.
+             * @description Standard deviation of each part, nT; by default that of the kind.
              */
             field_sd_nt?: number | null;
             /**
@@ -3532,109 +3534,110 @@ export interface components {
              */
             forward: number;
             /**
-             * @description What that heading is from: `model_reference`, the gyro or satellite compass that the
-             *     model was fitted with, or `ashore`.
+             * @description Source of that heading: `model_reference`, the gyro or satellite compass of the
+             *     model's fit, or `ashore`.
              */
             heading_from: components["schemas"]["HeadingFrom"];
             /**
              * Format: double
-             * @description Its standard deviation, degrees; 0.5 where it is not said.
+             * @description Standard deviation of the heading, including variation, degrees; 0.5 by default.
              */
             heading_sd_deg?: number | null;
             /**
              * Format: double
-             * @description The ship's true heading at the berth.
+             * @description True heading of the vessel, degrees.
              */
             heading_true_deg: number;
             /**
              * Format: double
-             * @description The ship's heel, degrees to starboard.
+             * @description Heel of the vessel, degrees to starboard.
              */
             heel_deg?: number;
             /**
              * Format: double
-             * @description The berth, degrees north.
+             * @description Latitude of the berth, degrees north.
              */
             lat: number;
             /**
              * Format: double
-             * @description The berth, degrees east.
+             * @description Longitude of the berth, degrees east.
              */
             lon: number;
-            /** @description What they were read with. */
+            /** @description Kind of magnetometer. */
             magnetometer: components["schemas"]["Magnetometer"];
-            /** @description Its maker, type and number. */
+            /** @description Maker, type and serial number of the magnetometer. */
             magnetometer_serial?: string | null;
             /**
              * Format: double
-             * @description Relative standard deviation of its scale; its kind's where it is not said.
+             * @description Relative standard deviation of the magnetometer's scale; by default that of the kind.
              */
             scale_sd?: number | null;
             /**
              * Format: double
-             * @description The same, starboard positive.
+             * @description Horizontal field there, starboard positive.
              */
             starboard: number;
-            /** @description Whether there is steel near: a crane, a ship alongside, a quay of steel piles. */
+            /** @description Steel nearby: a crane, a ship alongside, a quay of steel piles. */
             steel_nearby?: boolean;
             /**
              * Format: double
-             * @description Standard deviation of what steel may add to each part, nT.
+             * @description Standard deviation of the field of nearby steel in each part, nT.
              */
             steel_sd_nt?: number | null;
             /**
              * Format: double
-             * @description Standard deviation of its tilt, degrees; its kind's where it is not said.
+             * @description Standard deviation of the magnetometer's tilt in roll and in pitch, degrees; by
+             *     default that of the kind.
              */
             tilt_sd_deg?: number | null;
-            /** @description What all three are in. */
+            /** @description Unit of all three parts. */
             unit: components["schemas"]["FieldUnit"];
         };
-        /** @description A binnacle on board; docs/binnacle.md has every field. */
+        /** @description Written form of a binnacle on board; docs/binnacle.md explains every field. */
         Binnacle: {
-            /** @description All correctors on board, those in use included. */
+            /** @description All correctors on board, in use and spare. */
             aboard: components["schemas"]["CorrectorsAboard"];
             /** @description Measured effects of the correctors, which take precedence over the formulas. */
             calibration?: Record<string, never>[];
-            /** @description The maker's number of this one. */
+            /** @description Maker's serial number. */
             serial: string;
-            /** @description Their present setting. */
+            /** @description Setting of the correctors. */
             setting: components["schemas"]["CorrectorSetting"];
-            /** @description Its design, whole. */
+            /** @description Design of its kind. */
             type: components["schemas"]["BinnacleDesign"];
             /**
              * Format: int32
-             * @description Of this form: 1.
+             * @description Version of the form: 1.
              */
             version: number;
         };
-        /** @description A maker's design; docs/binnacle.md has every field. */
+        /** @description Written form of a binnacle's design; docs/binnacle.md explains every field. */
         BinnacleDesign: {
-            /** @description Trays or holes of the athwartship magnets. */
+            /** @description Holes or trays of the athwartship magnets, against C. */
             athwartship: components["schemas"]["MagnetRack"];
-            /** @description Class A or B of ISO 25862, or neither. */
+            /** @description Class of its compass by ISO 25862: A, B or neither. */
             compass: components["schemas"]["CompassClass"];
             flinders?: components["schemas"]["FlindersHolder"] | null;
-            /** @description Trays or holes of the fore-and-aft magnets. */
+            /** @description Holes or trays of the fore-and-aft magnets, against B. */
             fore_and_aft: components["schemas"]["MagnetRack"];
             heeling?: components["schemas"]["HeelingBucket"] | null;
-            /** @description Kinds of magnets that fit somewhere in it. */
+            /** @description Kinds of magnets that fit it. */
             magnets: components["schemas"]["MagnetKind"][];
-            /** @description Its maker. */
+            /** @description Name of the maker. */
             maker: string;
-            /** @description The maker's name for it. */
+            /** @description Maker's name of the model. */
             model: string;
             /**
              * Format: double
-             * @description Magnetic moment of the needles, A·m².
+             * @description Magnetic moment of the compass needles, A·m², which magnetise the spheres.
              */
             needle_moment_am2: number;
-            /** @description Source of its figures. */
+            /** @description Source of the figures. */
             provenance: string;
             quadrantal?: components["schemas"]["QuadrantalBrackets"] | null;
             /**
              * Format: int32
-             * @description Of this form: 1.
+             * @description Version of the form: 1.
              */
             version: number;
         };
@@ -3706,32 +3709,38 @@ export interface components {
             /** @description There is no next page. */
             next: string | null;
         };
-        /** @description An officer's report, whole. */
+        /**
+         * @description An officer's report, complete, under an id made on board: the request of
+         *     `PUT /api/v1/agents/logbook/{id}`.
+         *
+         *     It may be sent until it is acknowledged: repeating it, or sending an older
+         *     revision late, changes nothing.
+         */
         BoardReport: components["schemas"]["LogbookReport"] & {
             /**
-             * @description The officer's name, or nothing.
+             * @description The officer's name; may be empty.
              * @default
              */
             reporter: string;
             /**
              * Format: int32
-             * @description From 1; one more each time the officer changes the report.
+             * @description Revision, from 1; rises by one with each change by the officer.
              */
             revision: number;
             /**
-             * @description True if the officer withdraws the report.
+             * @description True when the officer withdraws the report.
              * @default false
              */
             withdrawn: boolean;
         };
-        /** @description A report that is in the logbook. */
+        /** @description An officer's report in the logbook: the response to the report. */
         BoardReportAnswer: {
             /**
              * Format: int32
-             * @description The latest revision from on board that is there.
+             * @description The latest revision in the logbook.
              */
             revision: number;
-            /** @description True if the entry was withdrawn, on board or ashore. */
+            /** @description True when the entry was withdrawn, on board or in the office. */
             withdrawn: boolean;
         };
         /**
@@ -3749,16 +3758,16 @@ export interface components {
          * @enum {string}
          */
         BookReference: "gyro" | "satellite" | "gyro_and_satellite";
-        /** @description A position of the pair. */
+        /** @description A position of the pair on the brackets. */
         BracketMark: {
             /**
              * Format: double
-             * @description From the card's centre to the centre of either, mm.
+             * @description Distance from the card's centre to the centre of either corrector, mm.
              */
             centre_mm: number;
             /**
              * Format: double
-             * @description Scale mark, mm.
+             * @description Mark on the scale, mm.
              */
             mark_mm: number;
         };
@@ -3807,13 +3816,13 @@ export interface components {
         /** @description A planned transit. */
         CanalTransit: {
             /**
-             * @description `panama`.
+             * @description The canal: `panama`.
              * @example panama
              */
             canal: string;
             /**
              * Format: date
-             * @description On which day.
+             * @description Day of the transit.
              */
             on: string;
         };
@@ -4072,15 +4081,15 @@ export interface components {
              */
             name: string;
         };
-        /** @description Withdrawal of earlier cards. */
+        /** @description Withdrawal of earlier cards: the ship's magnetism or the compass changed. */
         CardWithdrawn: {
             /**
-             * @description Change of the ship's magnetism or the compass: a kind of logbook entry, a detected cause, or
-             *     `ship_as_before`.
+             * @description The cause: a kind of logbook entry, a detected cause, or
+             *     `ship_as_before`. More values may be added.
              * @example adjustment
              */
             reason: string;
-            /** @description Time from which they do not hold. */
+            /** @description Time of the change, from which they do not hold. */
             since: components["schemas"]["Time"];
         };
         /** @description Magnetic cargo on board. */
@@ -4100,15 +4109,16 @@ export interface components {
         CargoKind: "steel" | "scrap" | "containers" | "other";
         /** @description A cause and its probability. */
         CauseProbability: {
+            /** @description Cause. */
             cause: components["schemas"]["ChangeCause"];
             /**
              * Format: double
-             * @description From 0 to 1.
+             * @description Probability, 0 to 1.
              * @example 0.93
              */
             probability: number;
         };
-        /** @description Caution on the use of a model. */
+        /** @description A limitation of a model that is otherwise the best available. */
         Caution: {
             /** @enum {string} */
             caution: "one_magnetic_latitude";
@@ -4131,7 +4141,7 @@ export interface components {
             caution: "long_gap";
             /**
              * Format: double
-             * @description Duration of the gap, days.
+             * @description Length of the gap, days.
              */
             days: number;
             /** @description Time of the last sample. */
@@ -4141,7 +4151,7 @@ export interface components {
             caution: "weak_field";
             /**
              * Format: double
-             * @description The weakest horizontal field, nT.
+             * @description Weakest horizontal field, nT.
              */
             h_nt: number;
         };
@@ -4194,7 +4204,7 @@ export interface components {
             withdrawn: boolean;
         };
         /**
-         * @description Cause of a change of what a compass shows.
+         * @description Cause of a change.
          * @enum {string}
          */
         ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "compass_fault" | "alignment" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown";
@@ -4244,7 +4254,7 @@ export interface components {
         ChosenPlan: {
             /** @description Which of those that were offered, from 1. */
             chosen: number;
-            /** @description What the adjuster should know. */
+            /** @description What the adjuster should know of it. */
             notes: string[];
             /** @description All that were offered, in short. */
             offered: components["schemas"]["PlanInShort"][];
@@ -4286,7 +4296,7 @@ export interface components {
         /** @description Amendment of a compass. Absent fields stay as they are; null removes a value. */
         CompassAmendment: {
             /**
-             * @description The binnacle's maker, type and number.
+             * @description Binnacle: maker, type and number.
              * @example Cassens & Plath type 11, no. 2047
              */
             binnacle?: string | null;
@@ -4295,13 +4305,17 @@ export interface components {
              * @example Cassens & Plath Reflecta 1
              */
             make?: string | null;
+            /** @description Name. */
             name?: string | null;
             role?: components["schemas"]["CompassRole"] | null;
-            /** @example 34871 */
+            /**
+             * @description Serial number.
+             * @example 34871
+             */
             serial_number?: string | null;
         };
         /**
-         * @description Classes of ISO 25862, and what is in neither.
+         * @description Class of a compass by ISO 25862.
          * @enum {string}
          */
         CompassClass: "class_a" | "class_b" | "other";
@@ -4363,7 +4377,7 @@ export interface components {
             /** @description Their name, typed as a signature. */
             signature: string;
         };
-        /** @description Where a corrector stands. */
+        /** @description Place of a corrector. */
         CorrectorPlace: (components["schemas"]["MagnetsInHole"] & {
             /** @enum {string} */
             place: "magnets";
@@ -4377,47 +4391,50 @@ export interface components {
             /** @enum {string} */
             place: "bucket";
         });
-        /** @description One way to set the correctors. */
+        /** @description A possible setting of the correctors. */
         CorrectorPlan: {
-            /** @description Residuals as they will be. */
+            /** @description Predicted residuals. */
             after: components["schemas"]["PredictedTable"][];
-            /** @description Deviations as they are, at the berth and in the waters. */
+            /** @description Present deviations at the berth and in the waters. */
             before: components["schemas"]["PredictedTable"][];
-            /** @description What becomes of the heeling magnets. */
+            /** @description Plan for the heeling magnets. */
             heeling: components["schemas"]["HeelingPlan"];
             /**
              * Format: double
              * @description λ with this setting.
              */
             lambda: number;
-            /** @description The model that holds from the last step on. */
+            /**
+             * @description Model that applies after the last step; its covariance includes the errors of λ and
+             *     of the moved correctors.
+             */
             model_after: components["schemas"]["Model"];
             /**
              * Format: int32
-             * @description Movements of hand that it takes.
+             * @description Number of moves.
              */
             moves: number;
-            /** @description How they will stand. */
+            /** @description Planned setting. */
             setting: components["schemas"]["CorrectorSetting"];
-            /** @description What to do, in order. */
+            /** @description Steps in order. */
             steps: components["schemas"]["PlanStep"][];
             /**
              * Format: double
-             * @description The widest 95 % band, degrees.
+             * @description Widest 95 % band in any of them, degrees.
              */
             widest_band_deg: number;
             /**
              * Format: double
-             * @description Worst foretold residual on any heading, weighted over the waters, degrees.
+             * @description Worst predicted residual on any heading, weighted over the waters, degrees.
              */
             worst_residual_deg: number;
         };
-        /** @description Setting of every corrector; an empty list or null is none. */
+        /** @description Setting of all correctors; an empty list or null is none. */
         CorrectorSetting: {
-            /** @description Athwartship magnets, a hole each. */
+            /** @description Athwartship magnets by hole. */
             athwartship?: components["schemas"]["MagnetsInHole"][];
             flinders?: components["schemas"]["BarSetting"] | null;
-            /** @description Fore-and-aft magnets, a hole each. */
+            /** @description Fore-and-aft magnets by hole. */
             fore_and_aft?: components["schemas"]["MagnetsInHole"][];
             heeling?: components["schemas"]["HeelingSetting"] | null;
             quadrantal?: components["schemas"]["PairSetting"] | null;
@@ -4434,20 +4451,20 @@ export interface components {
             /** @description How each stands. */
             setting: components["schemas"]["CorrectorSetting"];
         };
-        /** @description Correctors on board, those in use included. */
+        /** @description Correctors on board, including those in use. */
         CorrectorsAboard: {
-            /** @description Lengths of the Flinders bar's pieces, mm. */
+            /** @description Length of each piece of the Flinders bar, mm. */
             flinders_pieces_mm?: number[];
             /** @description Magnets by their kind. */
             magnets: components["schemas"]["MagnetLot"][];
-            /** @description Sizes of which there is a pair. */
+            /** @description Names of the sizes with a pair on board. */
             quadrantal?: string[];
         };
-        /** @description Coverage of a compass's samples. */
+        /** @description Coverage of a compass's samples, with advice and a comparison of the references. */
         Coverage: {
-            /** @description The bands that hold samples, from south to north. */
+            /** @description Bands with samples, from south to north. */
             bands: components["schemas"]["CoverageBand"][];
-            /** @description The cells that hold samples, by band and then by heading. */
+            /** @description Cells with samples, by band and then by heading. */
             cells: components["schemas"]["CoverageCell"][];
             /**
              * Format: int32
@@ -4464,20 +4481,35 @@ export interface components {
         };
         /** @description The range of fields in one band of magnetic latitude. */
         CoverageBand: {
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Least horizontal field of its samples, nT.
+             */
             h_nt_from: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Greatest horizontal field of its samples, nT.
+             */
             h_nt_to: number;
             /**
              * Format: int32
              * @description The band's southern edge, degrees of magnetic latitude.
              */
             magnetic_latitude_from_deg: number;
-            /** Format: int64 */
+            /**
+             * Format: int64
+             * @description Number of samples in it.
+             */
             samples: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Least vertical field of its samples, nT, down positive.
+             */
             z_nt_from: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Greatest vertical field of its samples, nT, down positive.
+             */
             z_nt_to: number;
         };
         /** @description One sector of heading within one band. */
@@ -4492,7 +4524,10 @@ export interface components {
              * @description The band's southern edge, degrees of magnetic latitude.
              */
             magnetic_latitude_from_deg: number;
-            /** Format: int64 */
+            /**
+             * Format: int64
+             * @description Number of samples in it.
+             */
             samples: number;
         };
         /** @description A message and what became of it. */
@@ -4711,7 +4746,7 @@ export interface components {
             worst: components["schemas"]["WorstHeading"];
         };
         /**
-         * @description State of the compass deviation book: kept or not.
+         * @description State of the compass deviation book.
          * @enum {string}
          */
         DeviationRecordKept: "kept" | "not_kept";
@@ -4739,7 +4774,7 @@ export interface components {
             magnetic_deg: number;
         };
         /**
-         * @description Direction of a deviation.
+         * @description Side to which a compass deviates.
          * @enum {string}
          */
         DeviationSide: "east" | "west";
@@ -4802,12 +4837,21 @@ export interface components {
             /** @description On this day. */
             on: components["schemas"]["Weekday"];
         };
-        /** @description The acknowledgement, and what the agent does not have. */
+        /**
+         * @description Acknowledgement, and everything that the agent lacks: the response to `PUT
+         *     /api/v1/streams/{stream}/batches/{seq}` and to `GET
+         *     /api/v1/streams/{stream}/downlink`.
+         *
+         *     Both take `?model={id}&settings={version}`, the agent's current ones. A
+         *     model that this version of the program cannot read leaves the rest intact:
+         *     the server may be years ahead of an agent.
+         */
         Downlink: {
             card_withdrawn?: components["schemas"]["CardWithdrawn"] | null;
             /**
              * Format: int64
-             * @description Every batch up to this one is durable; 0 for none.
+             * @description Every batch up to and including this one is durable on the server; 0 for
+             *     none.
              */
             contiguous_seq: number;
             model?: components["schemas"]["ModelDownlink"] | null;
@@ -4815,8 +4859,9 @@ export interface components {
             server_time: components["schemas"]["Time"];
             settings?: components["schemas"]["AgentSettings"] | null;
         };
-        /** @description Everything the agent needs to send. */
+        /** @description Everything the agent needs to send: the response to an enrolment. */
         EnrolAnswer: {
+            /** @description The compass's name, for the local page. */
             compass_name: string;
             /** @description The server's clock. */
             server_time: components["schemas"]["Time"];
@@ -4827,13 +4872,17 @@ export interface components {
             stream: string;
             /** @description Bearer token; shown this once. */
             token: string;
+            /** @description The vessel's name, for the local page. */
             vessel_name: string;
         };
-        /** @description A one-time code, to be exchanged for a token. */
+        /**
+         * @description A one-time code to be exchanged for a token: the request of `POST
+         *     /api/v1/agents/enrol`.
+         */
         EnrolRequest: {
-            /** @description The agent's own version. */
+            /** @description The agent's own version, for the operator's list. */
             agent_version: string;
-            /** @description The code the operator was shown. */
+            /** @description The code shown to the operator. */
             code: string;
         };
         /** @description An enrolment code. */
@@ -4895,7 +4944,7 @@ export interface components {
          */
         FeedId: string;
         /**
-         * @description The model of the earth's field.
+         * @description A standard model of the earth's field.
          * @enum {string}
          */
         FieldModel: "igrf14" | "wmm2025";
@@ -5192,11 +5241,11 @@ export interface components {
             track: number[][];
             worst: components["schemas"]["WorstHeading"] | null;
         };
-        /** @description The holder of the Flinders bar. */
+        /** @description The holder of the Flinders bar; its top pole is at the card's height. */
         FlindersHolder: {
             /**
              * Format: double
-             * @description From the card's centre to the bar's axis, mm.
+             * @description Distance from the card's centre to the bar's axis, mm.
              */
             axis_mm: number;
             /**
@@ -5206,140 +5255,185 @@ export interface components {
             diameter_mm: number;
             /**
              * Format: double
-             * @description The longest bar that the holder takes, mm.
+             * @description Greatest length of the bar, mm.
              */
             longest_mm: number;
-            /** @description On which sides of the card it can stand. */
+            /** @description Possible sides of the card. */
             sides: components["schemas"]["BarSide"][];
-            /** @description Angles by which the holder turns from there, degrees clockwise. */
+            /** @description Slew angles of the holder from there, degrees clockwise seen from above. */
             slews_deg?: number[];
             /**
              * Format: double
-             * @description Relative standard deviation of its effect about the formula's.
+             * @description Relative standard deviation of the effect about the formula's.
              */
             tolerance: number;
         };
-        /** @description For each parameter and the constant: 0 rests on ships at large, 1 on the data. */
+        /**
+         * @description Share of the prior variance of each parameter and the constant that the data removed: 0
+         *     rests on the prior alone, 1 on the data alone.
+         */
         FromData: {
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Share for bx, 0 to 1.
+             */
             bx_nt: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Share for by, 0 to 1.
+             */
             by_nt: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Share for χ11 − χ22, 0 to 1.
+             */
             chi11_minus_chi22: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Share for χ12, 0 to 1.
+             */
             chi12: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Share for χ13, 0 to 1.
+             */
             chi13: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Share for χ21, 0 to 1.
+             */
             chi21: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Share for χ23, 0 to 1.
+             */
             chi23: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Share for the constant, 0 to 1.
+             */
             constant_deg: number;
         };
         /**
-         * @description Correction of the gyro's speed error by the gyro itself.
+         * @description Place where the gyro's error from the ship's motion over the turning earth is corrected.
+         *     The correction must be applied exactly once.
          * @enum {string}
          */
         GyroSpeedError: "corrected" | "uncorrected";
         /**
-         * @description Approximate coefficients of the handbooks, degrees, as an adjuster finds them who swings the
-         *     ship.
+         * @description Coefficients A to E in degrees, east positive.
+         *
+         *     A of a fitted model includes the offsets that headings cannot separate from it: compass
+         *     alignment, reference and variation.
          */
         HandbookCoefficients: {
             /**
              * Format: double
-             * @description Constant; includes alignment, reference and variation offsets.
+             * @description Constant part.
              */
             A: number;
             /**
              * Format: double
-             * @description Of the sine of the heading.
+             * @description Semicircular part with the sine of the heading: greatest on east and west.
              */
             B: number;
             /**
              * Format: double
-             * @description Of the cosine of the heading.
+             * @description Semicircular part with the cosine: greatest on north and south.
              */
             C: number;
             /**
              * Format: double
-             * @description Of the sine of twice the heading.
+             * @description Quadrantal part with the sine of twice the heading: greatest between the cardinal
+             *     points.
              */
             D: number;
             /**
              * Format: double
-             * @description Of the cosine of twice the heading.
+             * @description Quadrantal part with the cosine of twice the heading: greatest on the cardinal
+             *     points.
              */
             E: number;
         };
-        /** @description The band where the ship is, and the headings that narrow it. */
+        /** @description Band in some waters, with suggestions that narrow it. */
         HeadingAdvice: {
+            /** @description Present band. */
             band: components["schemas"]["Band"];
             /**
              * Format: double
-             * @description Nothing sailed can narrow the band's root mean square by more, degrees.
+             * @description Greatest possible reduction of the band's root mean square, degrees.
              */
             narrows_at_most_deg: number;
-            /** @description The best first; empty where nothing narrows it noticeably. */
+            /** @description Suggestions, the most effective first; empty where none has a noticeable effect. */
             suggestions: components["schemas"]["HeadingSuggestion"][];
         };
         /**
-         * @description What a heading at the berth is from.
+         * @description Source of a heading at the berth.
          * @enum {string}
          */
         HeadingFrom: "model_reference" | "ashore";
         /**
-         * @description Compass headings clockwise from one to the other: the range may pass north,
-         *     and 0 to 360 is any heading.
+         * @description A range of compass headings, clockwise from first to last. It may pass north; 0 to 360
+         *     is any heading.
          */
         HeadingRange: {
-            /** Format: int32 */
+            /**
+             * Format: int32
+             * @description First heading, degrees, 0 to 345.
+             */
             heading_from_deg: number;
-            /** Format: int32 */
+            /**
+             * Format: int32
+             * @description Last heading, degrees, 15 to 360.
+             */
             heading_to_deg: number;
         };
-        /** @description Headings on which a watch is worth having; the range as in `HeadingRange`. */
+        /** @description A range of headings on which a watch narrows the band. */
         HeadingSuggestion: {
-            /** @description At most, after a watch on any heading of the range. */
+            /** @description Greatest band after one watch on any heading of the range. */
             after_one: components["schemas"]["Band"];
-            /** @description At most, after three watches on one heading of the range. */
+            /** @description Greatest band after three watches on one heading of the range. */
             after_three: components["schemas"]["Band"];
-            /** Format: int32 */
+            /**
+             * Format: int32
+             * @description First heading, degrees, 0 to 345.
+             */
             heading_from_deg: number;
-            /** Format: int32 */
+            /**
+             * Format: int32
+             * @description Last heading, degrees, 15 to 360.
+             */
             heading_to_deg: number;
         };
-        /** @description The bucket of the vertical magnets. */
+        /** @description Bucket of the heeling magnets under the card. */
         HeelingBucket: {
             /**
              * Format: int32
-             * @description Greatest number of magnets in it.
+             * @description Greatest number of magnets.
              */
             at_most: number;
-            /** @description The kind of magnets that fits, upright. */
+            /** @description Kind of magnets that fits, upright. */
             magnet: string;
-            /** @description Positions of the bucket, numbered from the bottom. */
+            /** @description Positions, numbered from the bottom. */
             positions: components["schemas"]["NumberedHeight"][];
         };
-        /** @description What becomes of the heeling magnets. */
+        /** @description Plan for the heeling magnets. */
         HeelingPlan: {
             /**
              * Format: double
-             * @description The same afterwards.
+             * @description Heeling error after the plan, degrees per degree of heel.
              */
             after_deg_per_deg: number | null;
             /**
              * Format: double
-             * @description Degrees of heeling error for each degree of heel on north, at the berth, as it is;
-             *     none where the vertical force was not read.
+             * @description Present heeling error on north at the berth, degrees per degree of heel; none
+             *     without a plausible vertical reading.
              */
             before_deg_per_deg: number | null;
-            /** @description Whether they are left as found for want of a vertical reading. */
+            /** @description Left as found for want of a plausible vertical reading. */
             left_as_found: boolean;
         };
-        /** @description Magnets in the bucket. */
+        /** @description Setting of the heeling magnets in the bucket. */
         HeelingSetting: {
             /**
              * Format: int32
@@ -5348,21 +5442,29 @@ export interface components {
             count: number;
             /**
              * Format: int32
-             * @description Number of its position, from the bottom.
+             * @description Number of the bucket's position, from the bottom.
              */
             position: number;
-            /** @description Direction of their red ends: up or down. */
+            /** @description Direction of the red ends: up or down. */
             red: components["schemas"]["RedEnd"];
         };
-        /** @description Parameters that the data determine; false for those that rest on the prior. */
+        /** @description Parameters determined by the data; a `false` one rests on the prior. */
         Identifiable: {
+            /** @description bx separately from χ13 Z. */
             bx_nt: boolean;
+            /** @description by separately from χ23 Z. */
             by_nt: boolean;
+            /** @description D. */
             chi11_minus_chi22: boolean;
+            /** @description χ12. */
             chi12: boolean;
+            /** @description χ13 separately from bx. */
             chi13: boolean;
+            /** @description χ21. */
             chi21: boolean;
+            /** @description χ23 separately from by. */
             chi23: boolean;
+            /** @description The constant separately from A: never from headings alone. */
             constant_deg: boolean;
         };
         /**
@@ -5392,24 +5494,24 @@ export interface components {
             user: components["schemas"]["User"];
         };
         /**
-         * @description Shapes of quadrantal correctors.
+         * @description Shape of quadrantal correctors.
          * @enum {string}
          */
         IronShape: "sphere" | "box" | "plate";
-        /** @description One size of a pair. */
+        /** @description A size of quadrantal correctors. */
         IronSize: {
             /**
              * Format: double
-             * @description Diameter of the sphere; of boxes and plates, that of the spheres that do the same.
+             * @description Diameter of the sphere; for boxes and plates, of the equivalent spheres, mm.
              */
             diameter_mm: number;
-            /** @description Name of the correctors. */
+            /** @description Name of the size. */
             name: string;
-            /** @description Their shape. */
+            /** @description Shape of the correctors. */
             shape: components["schemas"]["IronShape"];
             /**
              * Format: double
-             * @description Relative standard deviation of its effect about the formula's.
+             * @description Relative standard deviation of the effect about the formula's.
              */
             tolerance: number;
         };
@@ -5458,31 +5560,35 @@ export interface components {
             /** @description Her name. */
             vessel_name: string;
         };
-        /** @description The band in other waters, and the magnetic latitudes that narrow it. */
+        /** @description Band in some waters, with suggestions that narrow it. */
         LatitudeAdvice: {
+            /** @description Present band. */
             band: components["schemas"]["Band"];
             /**
              * Format: double
-             * @description Nothing sailed can narrow the band's root mean square by more, degrees.
+             * @description Greatest possible reduction of the band's root mean square, degrees.
              */
             narrows_at_most_deg: number;
-            /** @description The best first; empty where nothing narrows it noticeably. */
+            /** @description Suggestions, the most effective first; empty where none has a noticeable effect. */
             suggestions: components["schemas"]["LatitudeSuggestion"][];
         };
-        /** @description Magnetic latitudes in which a watch is worth having. */
+        /** @description A range of magnetic latitudes in which a watch narrows the band. */
         LatitudeSuggestion: {
-            /** @description At most, after the first of them. */
+            /** @description Greatest band after the first watch. */
             after_one: components["schemas"]["Band"];
-            /** @description At most, after all three. */
+            /** @description Greatest band after all three watches. */
             after_three: components["schemas"]["Band"];
-            /** @description On which headings to stand three watches there, in this order. */
+            /** @description Headings of three watches there, in this order. */
             headings: components["schemas"]["HeadingRange"][];
             /**
              * Format: int32
              * @description Southern edge, degrees of magnetic latitude, north positive.
              */
             magnetic_latitude_from_deg: number;
-            /** Format: int32 */
+            /**
+             * Format: int32
+             * @description Northern edge, degrees of magnetic latitude, north positive.
+             */
             magnetic_latitude_to_deg: number;
         };
         /** @description Number of samples of the current epoch that logbook entries leave out. */
@@ -5524,9 +5630,12 @@ export interface components {
             cargo?: components["schemas"]["CargoKind"] | null;
             compass_id?: components["schemas"]["CompassId"] | null;
             from?: components["schemas"]["Time"] | null;
+            /** @description Hatch in which the magnetic cargo lies. */
             hatch?: string | null;
             kind?: components["schemas"]["LogbookKind"] | null;
+            /** @description The reporter's own words. */
             note?: string | null;
+            /** @description Port. */
             port?: string | null;
             to?: components["schemas"]["Time"] | null;
         };
@@ -5561,7 +5670,8 @@ export interface components {
             withdrawn_by: string | null;
         };
         /**
-         * @description Subject of a logbook entry.
+         * @description Kind of a logbook entry, the most disruptive first. The first kind names an epoch that
+         *     several entries begin at once.
          * @enum {string}
          */
         LogbookKind: "adjustment" | "corrector_change" | "compass_moved" | "repair" | "dry_docking" | "welding" | "degaussing" | "lightning" | "shock" | "magnetic_cargo" | "berth" | "note";
@@ -5575,20 +5685,21 @@ export interface components {
         /** @description One event, as its reporter writes it down. */
         LogbookReport: {
             cargo?: components["schemas"]["CargoKind"] | null;
-            /** @description Time or beginning of the event. */
+            /** @description Time of the event, or its start. */
             from: components["schemas"]["Time"];
             /**
-             * @description Place of the magnetic cargo.
+             * @description The hatch in which the magnetic cargo lies.
              * @example 2
              */
             hatch?: string | null;
+            /** @description The kind of event. */
             kind: components["schemas"]["LogbookKind"];
             /**
-             * @description In the reporter's own words.
+             * @description The reporter's own words.
              * @default
              */
             note: string;
-            /** @description The port, where there is one. */
+            /** @description The port, if in one. */
             port?: string | null;
             to?: components["schemas"]["Time"] | null;
         };
@@ -5618,11 +5729,11 @@ export interface components {
          * @enum {string}
          */
         MagnetCarrier: "hole" | "tray";
-        /** @description Magnets of one kind. */
+        /** @description A kind of magnets. */
         MagnetKind: {
             /**
              * Format: double
-             * @description From end to end, mm.
+             * @description Length from end to end, mm.
              */
             length_mm: number;
             /**
@@ -5635,33 +5746,33 @@ export interface components {
              * @description Relative standard deviation of a magnet's moment about the nominal one.
              */
             moment_tolerance: number;
-            /** @description Name of the magnets. */
+            /** @description Name of the kind. */
             name: string;
         };
         /** @description Magnets of one kind on board. */
         MagnetLot: {
             /**
              * Format: int32
-             * @description Number of magnets, those in use included.
+             * @description Number of magnets, including those in use.
              */
             count: number;
             /**
-             * @description Their kind.
+             * @description Kind of the magnets.
              * @example 200 mm
              */
             magnet: string;
             /**
              * Format: double
-             * @description Their moment as it was tested, A·m²; the nominal one counts otherwise.
+             * @description Tested moment, A·m²; without it the nominal moment applies.
              */
             tested_moment_am2?: number | null;
             /**
              * Format: double
-             * @description Relative standard deviation of that; 0.02 where it is not said.
+             * @description Relative standard deviation of the tested moment; the default is 0.02.
              */
             tested_sd?: number | null;
         };
-        /** @description Positions of the magnets of one axis. */
+        /** @description Places for the magnets of one axis. */
         MagnetRack: {
             /**
              * Format: int32
@@ -5670,18 +5781,18 @@ export interface components {
             at_once: number;
             /** @description Carrier of the magnets. */
             carrier: components["schemas"]["MagnetCarrier"];
-            /** @description The holes, numbered from the bottom. */
+            /** @description Holes, numbered from the bottom. */
             holes: components["schemas"]["NumberedHeight"][];
             /** @description Names of the kinds that fit. */
             magnets: string[];
             /**
              * Format: int32
-             * @description Magnets in each.
+             * @description Greatest number of magnets in each: all of one kind, red ends in the same direction.
              */
             magnets_each: number;
             /**
              * Format: double
-             * @description Sideways distance of each magnet from the middle plane, mm.
+             * @description Sideways distance of each magnet from the binnacle's middle plane, mm.
              */
             off_centre_mm?: number;
             /**
@@ -5691,7 +5802,7 @@ export interface components {
             position_sd_mm?: number;
         };
         /**
-         * @description Kinds of magnetometer, by how well they read.
+         * @description Kind of magnetometer, by precision.
          * @enum {string}
          */
         Magnetometer: "fluxgate" | "magnetoresistive" | "phone" | "other";
@@ -5708,11 +5819,11 @@ export interface components {
              */
             hole: number;
             /**
-             * @description Their kind.
+             * @description Kind of the magnets.
              * @example 200 mm
              */
             magnet: string;
-            /** @description Direction of their red, north-seeking ends. */
+            /** @description Direction of the red, north-seeking ends. */
             red: components["schemas"]["RedEnd"];
         };
         /** @description Someone who gets mail. */
@@ -5778,13 +5889,14 @@ export interface components {
         Model: {
             /**
              * Format: double
-             * @description Constant added to the exact deviation: alignment, reference and variation offsets, degrees,
-             *     east positive.
+             * @description Constant added to the exact deviation: alignment, reference and variation offsets,
+             *     degrees, east positive.
              */
             constant_deg: number;
-            /** @description 8 × 8: the parameters in their order, the constant last. */
+            /** @description Covariance, 8 × 8: the parameters in their order, the constant last. */
             covariance: number[][] | null;
             identifiable: components["schemas"]["Identifiable"] | null;
+            /** @description Poisson's parameters over the shielding factor λ. */
             parameters_over_lambda: components["schemas"]["ParametersOverLambda"];
             quality?: components["schemas"]["Quality"] | null;
             /**
@@ -5794,32 +5906,35 @@ export interface components {
             rms_deg: number | null;
             /**
              * Format: int64
-             * @description Samples that were left out or held to be outliers.
+             * @description Number of samples left out or rejected as outliers.
              */
             samples_rejected: number;
             /**
              * Format: int64
-             * @description Samples that carried weight.
+             * @description Number of samples with weight.
              */
             samples_used: number;
             /**
              * Format: int32
-             * @description The version of this form: 1. Not to be confused with the count of the
-             *     compass's models.
+             * @description Version of this form: 1. It is not the number of the model.
              */
             version: number;
         };
-        /** @description A model as it is sent to the bridge. */
+        /** @description A model as sent to the bridge. */
         ModelDownlink: {
-            /** @description The time of the last sample in it. */
+            /** @description The time of the last sample that went into it: its age counts from here. */
             data_until: components["schemas"]["Time"];
-            /** Format: uuid */
+            /**
+             * Format: uuid
+             * @description The model version's id.
+             */
             id: string;
+            /** @description The fit. */
             model: components["schemas"]["Model"];
             replaces?: components["schemas"]["CardWithdrawn"] | null;
             /**
              * Format: int32
-             * @description Counts the compass's models from 1.
+             * @description Number of the model, counting the compass's models from 1.
              */
             version: number;
         };
@@ -5910,7 +6025,7 @@ export interface components {
             next: string | null;
         };
         /**
-         * @description What is moved at the binnacle.
+         * @description Kind of corrector.
          * @enum {string}
          */
         MovedCorrector: "flinders" | "quadrantal" | "heeling" | "fore_and_aft" | "athwartship";
@@ -5928,7 +6043,7 @@ export interface components {
             rule: components["schemas"]["RuleCited"] | null;
         };
         /**
-         * @description Cause of a due date.
+         * @description Kind of cause of a due date.
          * @enum {string}
          */
         NeedCauseKind: "never_adjusted" | "interval" | "event" | "over_limit" | "transit" | "change" | "failed_verification";
@@ -5945,9 +6060,9 @@ export interface components {
         };
         /** @description Headings that are still needed. */
         NeededHeadings: {
-            /** @description Compass headings that would do, degrees, the best first. */
+            /** @description Suitable compass headings, degrees, the best first. */
             compass_deg: number[];
-            /** @description How many. */
+            /** @description Number of headings. */
             count: number;
         };
         /**
@@ -6387,16 +6502,16 @@ export interface components {
         NotificationsRead: {
             until?: components["schemas"]["NotificationId"] | null;
         };
-        /** @description A numbered height below the card. */
+        /** @description A numbered hole or position below the card. */
         NumberedHeight: {
             /**
              * Format: double
-             * @description From the card's centre down to the magnets' centre, mm.
+             * @description Vertical distance from the card's centre down to the magnets' centre, mm.
              */
             below_card_mm: number;
             /**
              * Format: int32
-             * @description From 1, at the bottom, upwards.
+             * @description Number, from 1 at the bottom upwards (ISO 25862).
              */
             number: number;
         };
@@ -6449,9 +6564,16 @@ export interface components {
             /** @description In words. */
             text?: string | null;
         };
-        /** @description A stream just opened. */
+        /**
+         * @description A new stream for the same compass: the response to `POST /api/v1/streams`.
+         *
+         *     An agent opens one when its spool was lost or restored from an old copy.
+         */
         OpenStreamAnswer: {
-            /** Format: uuid */
+            /**
+             * Format: uuid
+             * @description The new stream.
+             */
             stream: string;
         };
         /** @description A company with a fleet. */
@@ -6573,39 +6695,50 @@ export interface components {
             size: string;
             /**
              * Format: double
-             * @description Degrees clockwise from athwartships, seen from above.
+             * @description Slew, degrees clockwise from athwartships, seen from above.
              */
             slew_deg?: number;
         };
-        /** @description Poisson's parameters over the shielding factor. */
+        /**
+         * @description The seven ratios that headings determine: Poisson's parameters over λ.
+         *
+         *     Fields are in nanotesla, soft-iron coefficients dimensionless. Ship axes:
+         *     x forward, y starboard, z down.
+         */
         ParametersOverLambda: {
             /**
              * Format: double
-             * @description Fore-and-aft permanent field, nT, forward positive.
+             * @description Fore-and-aft permanent field over λ (P), nT, forward positive.
              */
             bx_nt: number;
             /**
              * Format: double
-             * @description Athwartship permanent field, nT, starboard positive.
+             * @description Athwartship permanent field over λ (Q), nT, starboard positive.
              */
             by_nt: number;
             /**
              * Format: double
-             * @description Twice the exact coefficient D.
+             * @description (χ11 − χ22)/λ (a − e), twice the exact coefficient D.
              */
             chi11_minus_chi22: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description χ12/λ (b).
+             */
             chi12: number;
             /**
              * Format: double
-             * @description Fore-and-aft field from the vertical earth field.
+             * @description χ13/λ (c): fore-and-aft field from the vertical earth field.
              */
             chi13: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description χ21/λ (d).
+             */
             chi21: number;
             /**
              * Format: double
-             * @description Athwartship field from the vertical earth field.
+             * @description χ23/λ (f): athwartship field from the vertical earth field.
              */
             chi23: number;
         };
@@ -6723,7 +6856,7 @@ export interface components {
             worst_residual_deg: number;
         };
         /**
-         * @description What a plan must keep to; what is left out is the usual.
+         * @description Limits of a plan; an absent limit takes its default.
          * @example {
          *       "band_deg": 1.5,
          *       "residual_deg": 3
@@ -6732,57 +6865,65 @@ export interface components {
         PlanLimits: {
             /**
              * Format: double
-             * @description The widest 95 % band, degrees; usually 2.5.
+             * @description Greatest 95 % band, degrees; 2.5 by default.
              */
             band_deg?: number;
             /**
              * Format: double
-             * @description With a λ less sure than this share soft iron stays; usually 0.03.
+             * @description Greatest relative standard error of λ for moving soft iron; 0.03 by default.
              */
             lambda_sd?: number;
             /**
              * Format: double
-             * @description The oldest model, days; usually 60.
+             * @description Greatest age of the model, days; 60 by default.
              */
             model_age_days?: number;
             /**
              * Format: double
-             * @description Settings within this are as good as each other, degrees; usually 0.1.
+             * @description Difference below which settings count as equal, degrees; 0.1 by default. The one with
+             *     the fewest moves is chosen.
              */
             near_equal_deg?: number;
             /**
              * Format: double
-             * @description The greatest residual that may be foretold, band included, degrees; usually 3.
+             * @description Greatest predicted residual, including its band, degrees; 3 by default.
              */
             residual_deg?: number;
         };
-        /** @description What the planner offers. */
+        /** @description Result of planning. */
         PlanOffer: {
-            /** @description What the berth told, and how well each coefficient shows on this heading. */
+            /** @description Check of the berth; none when its reading was refused. */
             berth?: Record<string, never> | null;
-            /** @description What the adjuster should know. */
+            /** @description Notes for the adjuster. */
             notes: string[];
             optimality?: components["schemas"]["PlanOptimality"] | null;
-            /** @description The recommended plan first, then others that cost more or less. */
+            /** @description Recommended plan first, then others with more or fewer moves. */
             plans: components["schemas"]["CorrectorPlan"][];
-            /** @description Empty: a refusal is a problem document. */
+            /** @description Reasons for the absence of a plan; empty when there is one. */
             refusals: Record<string, never>[];
         };
-        /** @description How well the search knows that nothing is better. */
+        /** @description Optimality of the search. */
         PlanOptimality: {
             /**
              * Format: double
-             * @description No setting's worst residual is better than the best plan's by more, degrees.
+             * @description Greatest possible improvement over the best plan's worst residual, weighted over the
+             *     waters, degrees.
              */
             gap_deg: number;
             /**
              * Format: int64
-             * @description Boxes of settings that were looked at.
+             * @description Number of boxes of settings in the search.
              */
             nodes: number;
-            /** @description Whether every setting of the catalogue was gone through or excluded. */
+            /**
+             * @description Proven: every setting was tried or excluded, and none is better by more than a gap
+             *     that no card shows.
+             */
             proven: boolean;
-            /** @description Most trays or holes of fore-and-aft and athwartship magnets in use at once. */
+            /**
+             * @description Greatest number of trays or holes of fore-and-aft and athwartship magnets in use at
+             *     once.
+             */
             trays_in_use: number[];
         };
         /** @description Place and day of a job, with its price. */
@@ -6806,43 +6947,43 @@ export interface components {
             /** @description The port's name; empty where the call is not known any more. */
             port_name: string;
         };
-        /** @description One movement, to be checked on the spot. */
+        /** @description One movement with its check on the spot. */
         PlanStep: {
-            /** @description What is done with it. */
+            /** @description Action. */
             action: components["schemas"]["StepAction"];
             /**
              * Format: double
-             * @description By how much it will have turned, degrees, clockwise positive.
+             * @description Predicted turn of the compass, degrees, clockwise positive.
              */
             change_deg: number;
-            /** @description What to see to before. */
+            /** @description Check before the step. */
             check: string | null;
-            /** @description What is moved. */
+            /** @description Kind of corrector. */
             corrector: components["schemas"]["MovedCorrector"];
             /**
              * Format: double
-             * @description What the compass will then read at the berth, degrees.
+             * @description Predicted compass heading at the berth afterwards, degrees.
              */
             expected_compass_deg: number;
             from: components["schemas"]["CorrectorPlace"] | null;
             /**
              * Format: int32
-             * @description From 1.
+             * @description Number, from 1.
              */
             number: number;
-            /** @description Whether on this heading the compass shows the step at all. */
+            /** @description Visible: the compass shows the step on this heading. */
             seen: boolean;
-            /** @description How they stand then. */
+            /** @description Setting afterwards. */
             setting_after: components["schemas"]["CorrectorSetting"];
-            /** @description How the correctors stood before. */
+            /** @description Setting before. */
             setting_before: components["schemas"]["CorrectorSetting"];
             to: components["schemas"]["CorrectorPlace"] | null;
             /**
              * Format: double
-             * @description How far off it may be, degrees.
+             * @description Tolerance of the turn, degrees.
              */
             tolerance_deg: number;
-            /** @description All of it in a sentence. */
+            /** @description Instruction in a sentence. */
             words: string;
         };
         /** @description A heading alongside. */
@@ -6852,7 +6993,7 @@ export interface components {
              * @description Degrees, true.
              */
             heading_deg: number;
-            /** @description `given`, or learnt at the same `berth` or `port`. */
+            /** @description Source of the heading: `given`, or earlier calls at the same `berth` or `port`. */
             source: string;
         };
         /** @description A compass that a job is for. */
@@ -6940,35 +7081,35 @@ export interface components {
             weighed: components["schemas"]["PlannedJobWeighed"];
         };
         /**
-         * @description State of a job.
+         * @description Progress of a job.
          * @enum {string}
          */
         PlannedJobState: "proposed" | "offered" | "confirmed";
-        /** @description Terms of a job's cost beside payments, euros. */
+        /** @description Weighted costs of a job beyond what is paid, in euros. */
         PlannedJobWeighed: {
             /**
              * Format: double
-             * @description Departing from the plan before.
+             * @description Departure from the previous plan, euros.
              */
             changed_eur: number;
             /**
              * Format: double
-             * @description The days before it.
+             * @description Days before the due date, euros.
              */
             early_eur: number;
             /**
              * Format: double
-             * @description The days after the due date.
+             * @description Days to come after the due date, and lateness itself, euros.
              */
             late_eur: number;
             /**
              * Format: double
-             * @description The chance of missing the ship.
+             * @description Risk of missing the ship, euros.
              */
             risk_eur: number;
             /**
              * Format: double
-             * @description The days until then.
+             * @description Days of waiting, euros.
              */
             waiting_eur: number;
         };
@@ -7040,16 +7181,28 @@ export interface components {
          *     }
          */
         PortCallAmendment: {
+            /** @description Berth. */
             berth?: string | null;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description True heading alongside, degrees.
+             */
             berth_heading_deg?: number | null;
+            /** @description Expected arrival alongside, with a time zone. */
             eta?: components["schemas"]["Time"];
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Half-width of the 95 % interval of the arrival, hours.
+             */
             eta_uncertainty_h?: number;
+            /** @description Expected departure, with a time zone. */
             etd?: components["schemas"]["Time"];
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Half-width of the 95 % interval of the departure, hours.
+             */
             etd_uncertainty_h?: number;
-            /** @description UN/LOCODE. */
+            /** @description UN/LOCODE of the port. */
             port?: string;
         };
         /** @description Content of a port call, whatever its source. */
@@ -7145,47 +7298,53 @@ export interface components {
             /** @description Ports that begin with the text come first. */
             items: components["schemas"]["Port"][];
         };
-        /** @description One compass heading. */
+        /** @description Prediction on one compass heading. */
         PredictedRow: {
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Half the width of the 95 % band, degrees.
+             */
             band95_deg: number | null;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Compass heading, degrees.
+             */
             compass_deg: number;
             /**
              * Format: double
-             * @description East positive.
+             * @description Deviation, degrees, east positive.
              */
             deviation_deg: number;
         };
-        /** @description Deviations foretold at one place. */
+        /** @description Predictions on all headings at one place. */
         PredictedTable: {
             /**
              * Format: double
              * @description Horizontal field, nT.
              */
             h_nt: number;
-            /** @description `berth`, or the name of a water. */
+            /** @description Name of the place: `berth`, or the name of a water. */
             place: string;
             /**
              * Format: double
-             * @description The greatest deviation with its band, degrees.
+             * @description Greatest deviation with its band on any heading, degrees.
              */
             reach_deg: number | null;
-            /** @description Every 15° of compass heading; empty where headings are ambiguous. */
+            /** @description Predictions every 15° of compass heading; empty where headings are ambiguous. */
             rows: components["schemas"]["PredictedRow"][];
             /**
              * Format: double
-             * @description The widest band, degrees.
+             * @description Widest band on any heading, degrees.
              */
             widest_band_deg: number | null;
             /**
              * Format: double
-             * @description The compass heading of that.
+             * @description Compass heading of the greatest deviation.
              */
             worst_compass_deg: number | null;
             /**
              * Format: double
-             * @description The greatest deviation on any heading, degrees.
+             * @description Greatest deviation on any heading, degrees; none where headings are ambiguous.
              */
             worst_deg: number | null;
             /**
@@ -7239,32 +7398,37 @@ export interface components {
             /** @description Of the authenticator app, or a recovery code. */
             code: string;
         };
-        /** @description Soft iron in pairs at the card's height. */
+        /** @description Quadrantal correctors: soft iron in pairs at the card's height. */
         QuadrantalBrackets: {
             /** @description Positions on the brackets' scale. */
             marks: components["schemas"]["BracketMark"][];
             /** @description Sizes that fit the brackets. */
             sizes: components["schemas"]["IronSize"][];
-            /** @description Angles to which the brackets turn from athwartships, degrees clockwise. */
+            /**
+             * @description Slew angles of the brackets, degrees clockwise from athwartships seen from above:
+             *     positive moves the starboard one aft, 90 is fore and aft.
+             */
             slews_deg?: number[];
         };
-        /** @description Quality of a model. */
+        /** @description Evidence behind a model. */
         Quality: {
-            /** @description Cautions on the use of the model. */
+            /** @description Uses for which the model should not be trusted. */
             cautions: components["schemas"]["Caution"][];
             /**
              * Format: double
-             * @description Standard error of the worst known combination of parameters over that of
-             *     the best, by the data alone; null where the data leave one quite open.
+             * @description Condition of the fit: standard error of the worst known combination of parameters
+             *     over that of the best, by the data alone and in units of the prior; none where the
+             *     data leave a combination undetermined.
              */
             condition: number | null;
             /**
              * Format: double
-             * @description Number of samples with independent errors that would determine the deviation at the last
-             *     place as well as all samples do.
+             * @description Effective sample size: the number of samples with independent errors that would
+             *     determine the deviation, at the last position, as well as all samples together. A
+             *     gyro's errors last for hours and days, so samples repeat each other.
              */
             effective_samples: number;
-            /** @description Part of the knowledge of each parameter that is from the data, 0 to 1. */
+            /** @description Share of each parameter's knowledge that comes from the data. */
             from_data: components["schemas"]["FromData"];
         };
         /** @description Hours without mail; over midnight if `to` is before `from`. */
@@ -7280,15 +7444,19 @@ export interface components {
              */
             to: string;
         };
-        /** @description Settings of an analysis. */
+        /**
+         * @description Settings of an analysis, part of its input: a changed setting makes a new analysis of
+         *     the same samples.
+         */
         ReadingSettings: {
-            /** @description The model of the earth's field. */
+            /** @description Model of the earth's field that the samples are compared with. */
             field_model: components["schemas"]["FieldModel"];
-            /** @description Correction of the gyro's speed error by the gyro itself. */
+            /** @description Correction of the gyro's speed error. */
             gyro_speed_error: components["schemas"]["GyroSpeedError"];
             /**
              * Format: double
-             * @description Standard deviation of a reference's constant error, degrees.
+             * @description Prior standard deviation of one reference's constant error, degrees. Headings cannot
+             *     separate it from the compass's own alignment, so every band contains it.
              */
             reference_constant_sd_deg: number;
         };
@@ -7317,53 +7485,49 @@ export interface components {
             recovery_codes: string[];
         };
         /**
-         * @description Direction of a red, north-seeking end.
+         * @description Direction of the red, north-seeking end.
          * @enum {string}
          */
         RedEnd: "forward" | "aft" | "starboard" | "port" | "up" | "down";
-        /**
-         * @description Comparison of gyro and satellite compass over the samples since the last change of the ship or
-         *     the compass.
-         */
+        /** @description Comparison of a vessel's two references over all samples. */
         References: {
             /**
              * Format: double
-             * @description Standard deviation of the constant error that is left in the reference,
-             *     degrees.
+             * @description Standard deviation of the reference's remaining constant error, degrees.
              */
             constant_sd_deg: number;
             /**
              * Format: double
-             * @description One of the two has failed where their difference departs further than this
-             *     from the usual, degrees.
+             * @description Failure threshold: greatest departure of the difference from its usual value before
+             *     one reference counts as failed, degrees.
              */
             failed_beyond_deg: number;
             /**
              * Format: int64
-             * @description Samples whose gyro was dropped.
+             * @description Number of samples whose gyro heading was dropped.
              */
             gyro_dropped: number;
             /**
              * Format: double
-             * @description Gyro less satellite compass, usually, degrees; none without enough pairs.
+             * @description Usual value of gyro less satellite compass, degrees; none without enough pairs.
              */
             offset_deg: number | null;
             /**
              * Format: int64
-             * @description Samples with both.
+             * @description Number of samples with both references.
              */
             pairs: number;
             /**
              * Format: int64
-             * @description Samples whose satellite compass was dropped.
+             * @description Number of samples whose satellite heading was dropped.
              */
             satellite_dropped: number;
         };
-        /** @description Reason for which a model is refused. */
+        /** @description Reason for a fit without a model. */
         Refusal: {
             /**
              * Format: int64
-             * @description Number of samples.
+             * @description Number of readings.
              */
             readings: number;
             /** @enum {string} */
@@ -7384,7 +7548,7 @@ export interface components {
             found: number;
             /**
              * Format: int64
-             * @description Number that is needed.
+             * @description Least number of samples.
              */
             needed: number;
             /** @enum {string} */
@@ -7392,48 +7556,48 @@ export interface components {
         } | {
             /**
              * Format: double
-             * @description Widest such range that is allowed, degrees.
+             * @description Widest allowed gap, degrees.
              */
             allowed_gap_deg: number;
             /**
              * Format: int32
-             * @description Sectors of 15° with at least one sample.
+             * @description Number of 15° sectors with at least one observation.
              */
             found: number;
             /**
-             * @description Headings without a sample, in whole sectors of 15°. Each range is its first degree and
-             *     the one after its last, beyond 360 through north.
+             * @description Headings without an observation: whole sectors of 15°, each range by its first
+             *     degree and the one after its last, beyond 360 through north.
              */
             missing_deg: number[][];
             /**
              * Format: int32
-             * @description Number that is needed.
+             * @description Least number of sectors.
              */
             needed: number;
             /** @enum {string} */
             reason: "too_few_headings";
             /**
              * Format: double
-             * @description Widest range of headings without a sample, degrees.
+             * @description Widest gap of headings without an observation, degrees.
              */
             widest_gap_deg: number;
         } | {
             /**
              * Format: double
-             * @description Horizontal field that is needed, nT.
+             * @description Least horizontal field for a compass, nT.
              */
             needed_nt: number;
             /** @enum {string} */
             reason: "field_too_weak";
             /**
              * Format: double
-             * @description Strongest horizontal field among them, nT.
+             * @description Strongest horizontal field among the observations, nT.
              */
             strongest_nt: number;
         } | {
             /**
              * Format: double
-             * @description Horizontal field at which that happens, nT.
+             * @description Horizontal field of the ambiguity, nT.
              */
             h_nt: number;
             /** @enum {string} */
@@ -7444,7 +7608,7 @@ export interface components {
         } | {
             /**
              * Format: double
-             * @description Greatest difference that is allowed, degrees.
+             * @description Greatest allowed difference, degrees.
              */
             allowed_deg: number;
             /**
@@ -7457,7 +7621,7 @@ export interface components {
         } | {
             /**
              * Format: int64
-             * @description Number of readings in which it did.
+             * @description Number of readings with a stuck reference.
              */
             readings: number;
             /** @enum {string} */
@@ -7465,7 +7629,7 @@ export interface components {
         } | {
             /**
              * Format: double
-             * @description Greatest value that is allowed, degrees.
+             * @description Greatest allowed value, degrees.
              */
             allowed_deg: number;
             /** @enum {string} */
@@ -7711,18 +7875,19 @@ export interface components {
             section: string | null;
         };
         /**
-         * @description Advice on what to sail next. A watch is four hours on one compass heading; three watches are on
-         *     three successive days.
+         * @description Headings and magnetic latitudes that would narrow the band most.
+         *
+         *     A watch is four hours on one compass heading. Three watches are on three successive days.
          */
         SailNext: {
             elsewhere: components["schemas"]["LatitudeAdvice"] | null;
             /**
              * Format: double
-             * @description Half the band that is left when all is learnt that headings can show:
-             *     the reference's own constant error, degrees.
+             * @description Remaining band after headings have shown everything that they can: half its width,
+             *     from the reference's own constant error, degrees.
              */
             floor_deg: number;
-            /** @description The headings to sail here, for the band here. */
+            /** @description Headings to sail here, for the band here. */
             here: components["schemas"]["HeadingAdvice"];
             /**
              * Format: double
@@ -7730,7 +7895,7 @@ export interface components {
              */
             watch_hours: number;
         };
-        /** @description A sample and what became of it. */
+        /** @description A sample with its diagnosis. Unavailable values are none. */
         Sample: {
             /**
              * Format: double
@@ -7754,22 +7919,22 @@ export interface components {
             h_nt: number | null;
             /**
              * Format: double
-             * @description Degrees north.
+             * @description Latitude, degrees, north positive.
              */
             lat: number;
             /**
              * Format: double
-             * @description Degrees east.
+             * @description Longitude, degrees, east positive.
              */
             lon: number;
             /**
              * Format: double
-             * @description The model's deviation on this heading, here, degrees.
+             * @description Predicted deviation on this compass heading at this place, degrees.
              */
             predicted_deg: number | null;
             /**
              * Format: double
-             * @description Mean rate of turn, degrees a minute, starboard positive.
+             * @description Mean rate of turn in degrees a minute, starboard positive.
              */
             rate_of_turn_deg_min: number | null;
             reason: components["schemas"]["SampleReason"] | null;
@@ -7785,21 +7950,21 @@ export interface components {
             satellite_deg: number | null;
             /**
              * Format: double
-             * @description Speed over ground, knots.
+             * @description Speed over ground in knots.
              */
             sog_kn: number | null;
             /**
              * Format: double
-             * @description Standard deviation of compass less reference among the windows, degrees.
+             * @description Standard deviation, in degrees, of compass less reference among the windows.
              */
             spread_deg: number | null;
-            /** @description The middle of the stretch. */
+            /** @description The middle of the stretch, UTC. */
             time: components["schemas"]["Time"];
-            /** @description True if it carried weight in a model. */
+            /** @description Used: it had weight in a model. */
             used: boolean;
             /**
              * Format: double
-             * @description The earth's variation, degrees, east positive.
+             * @description Variation, degrees, east positive.
              */
             variation_deg: number | null;
             /**
@@ -7809,7 +7974,7 @@ export interface components {
             weight: number;
             /**
              * Format: int32
-             * @description Number of settled ten-second windows in the means.
+             * @description Number of settled ten-second windows in the means; at least 1.
              */
             windows: number;
             /**
@@ -7870,7 +8035,7 @@ export interface components {
             with_residual: number;
         };
         /**
-         * @description Reason for which a sample was left out, or counted for less.
+         * @description Reason for the rejection or reduced weight of a sample.
          * @enum {string}
          */
         SampleReason: "no_reference" | "reference_failed" | "compass_stuck" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "disturbance" | "outlier" | "no_model";
@@ -8017,43 +8182,43 @@ export interface components {
              */
             weights?: Record<string, never>;
         };
-        /** @description What headings at sea say of a prediction. */
+        /** @description Verification of the plan by the headings. */
         SeaVerdict: {
             /**
              * Format: double
-             * @description The widest 95 % band that is left, degrees.
+             * @description Widest remaining 95 % band, degrees.
              */
             band95_deg: number;
-            /** @description Headings that counted. */
+            /** @description Number of headings that counted. */
             headings: number;
             /**
              * Format: double
-             * @description Root mean square of what they are off, degrees.
+             * @description Root mean square of the residuals, degrees.
              */
             rms_deg: number;
             /** @enum {string} */
             verdict: "passed";
         } | {
-            /** @description Headings that counted. */
+            /** @description Number of headings that counted. */
             headings: number;
-            /** @description Which others are needed. */
+            /** @description Headings that are still needed. */
             needed: components["schemas"]["NeededHeadings"];
             /** @enum {string} */
             verdict: "more_needed";
         } | {
             /**
              * Format: double
-             * @description Its compass heading, degrees.
+             * @description Compass heading of it, degrees.
              */
             compass_deg: number;
             /**
              * Format: double
-             * @description By how much it is off, degrees.
+             * @description Residual, degrees.
              */
             off_deg: number;
             /**
              * Format: double
-             * @description The standard error of that, degrees.
+             * @description Standard error of the residual, degrees.
              */
             standard_error_deg: number;
             /** @enum {string} */
@@ -8083,7 +8248,8 @@ export interface components {
             uri: string;
         };
         /**
-         * @description What the magnetometer of the first reading read after the steps, in the same place.
+         * @description Second reading with the same magnetometer in the same place and alignment, after the
+         *     steps.
          * @example {
          *       "at": "2026-11-22T10:05:00Z",
          *       "forward": 15.1,
@@ -8092,16 +8258,16 @@ export interface components {
          *     }
          */
         SecondReading: {
-            /** @description When it was read. */
+            /** @description Time of the reading. */
             at: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description What the compass read before the bowl was taken out, degrees.
+             * @description Compass heading before the bowl was taken out, degrees.
              */
             compass_deg?: number | null;
             /**
              * Format: double
-             * @description Vertical field there, down positive.
+             * @description Vertical field there, down positive, if measured.
              */
             down?: number | null;
             /**
@@ -8111,29 +8277,32 @@ export interface components {
             forward: number;
             /**
              * Format: double
-             * @description The ship's true heading, by the same means, where it is no longer what it was.
+             * @description True heading of the vessel from the same source, if it changed, degrees.
              */
             heading_true_deg?: number | null;
             /**
              * Format: double
-             * @description The same, starboard positive.
+             * @description Horizontal field there, starboard positive.
              */
             starboard: number;
-            /** @description What all three are in. */
+            /** @description Unit of all three parts. */
             unit: components["schemas"]["FieldUnit"];
         };
-        /** @description One part of the field, nT. */
+        /** @description One component of the field. */
         SecondReadingPart: {
             /**
              * Format: double
-             * @description What was foretold.
+             * @description Predicted field, nT.
              */
             expected_nt: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Measured field, nT.
+             */
             read_nt: number;
             /**
              * Format: double
-             * @description Of the difference.
+             * @description Standard error of the difference, nT.
              */
             standard_error_nt: number;
         };
@@ -8174,13 +8343,13 @@ export interface components {
         /** @description A port that a firm serves. */
         ServedPort: {
             /**
-             * @description UN/LOCODE.
+             * @description UN/LOCODE of the port.
              * @example NLRTM
              */
             port: string;
             /**
              * Format: double
-             * @description What it costs to send a team there for a day, euros.
+             * @description Cost of sending a team there for a day, euros.
              */
             travel_eur?: number;
         };
@@ -8267,35 +8436,35 @@ export interface components {
              */
             second_factor_required: boolean;
         };
-        /** @description A step of permanent magnetism over the shielding factor, nT. */
+        /** @description A step of permanent magnetism over λ, nT, with its standard errors. */
         Step: {
             /**
              * Format: double
-             * @description Fore and aft, forward positive.
+             * @description Fore and aft, nT, forward positive.
              * @example 1850
              */
             bx_nt: number;
             /**
              * Format: double
-             * @description Standard error of the first.
+             * @description Standard error of `bx_nt`, nT.
              * @example 120
              */
             bx_se_nt: number;
             /**
              * Format: double
-             * @description Athwartships, starboard positive.
+             * @description Athwartships, nT, starboard positive.
              * @example -640
              */
             by_nt: number;
             /**
              * Format: double
-             * @description Standard error of the second.
+             * @description Standard error of `by_nt`, nT.
              * @example 95
              */
             by_se_nt: number;
         };
         /**
-         * @description What is done with a corrector.
+         * @description Action of a step.
          * @enum {string}
          */
         StepAction: "fit" | "take_out" | "move" | "change";
@@ -8319,13 +8488,19 @@ export interface components {
         };
         /** @description What became of a step. */
         StepSaid: {
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Compass reading after the step, degrees.
+             */
             after_deg: number;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description Compass reading before the step, degrees.
+             */
             before_deg: number;
             /**
              * Format: double
-             * @description By how much the compass should have turned.
+             * @description Expected turn of the compass, degrees.
              */
             expected_change_deg: number;
             /**
@@ -8335,7 +8510,7 @@ export interface components {
             number: number;
             /**
              * Format: double
-             * @description How far off that may be.
+             * @description Tolerance of the turn, degrees.
              */
             tolerance_deg: number;
             /** @description In a word. */
@@ -8350,7 +8525,7 @@ export interface components {
         StepVerdict: "confirmed" | "not_seen" | "wrong_end" | "other_strength" | "unexplained";
         /**
          * Format: date-time
-         * @description BIGINT microseconds in the database, RFC 3339 in JSON.
+         * @description An instant, RFC 3339.
          * @example 2026-11-21T07:00:00Z
          */
         Time: string;
@@ -8437,7 +8612,7 @@ export interface components {
          */
         TokenScope: "read" | "write";
         /**
-         * @description Trade of a vessel.
+         * @description A ship's trade.
          * @enum {string}
          */
         Trade: "bulk" | "container" | "tanker" | "general_cargo" | "ro_ro" | "passenger" | "fishing" | "offshore" | "other";
@@ -8549,20 +8724,23 @@ export interface components {
         };
         /** @description Amendment of a vessel. Absent fields stay as they are; null removes a value. */
         VesselAmendment: {
-            /** @example EAVN */
+            /**
+             * @description Call sign.
+             * @example EAVN
+             */
             call_sign?: string | null;
             /**
-             * @description State of its degaussing coils, in words.
+             * @description State of the degaussing coils, in words.
              * @example no coils fitted
              */
             degaussing?: string | null;
             /**
-             * @description The flag state.
+             * @description Flag state.
              * @example Spain
              */
             flag?: string | null;
             /**
-             * @description With its check digit.
+             * @description IMO number with its check digit.
              * @example 9074729
              */
             imo_number?: string | null;
@@ -8571,6 +8749,7 @@ export interface components {
              *     no alert. All its records stay, and what its agents send is kept.
              */
             in_service?: boolean | null;
+            /** @description Name. */
             name?: string | null;
         };
         /** @description The data of an event. */

@@ -8,15 +8,13 @@ use super::nearly_equal::nearly_equal;
 use super::setting::Setting;
 use serde::{Deserialize, Serialize};
 
-/// Written form of a binnacle; [`Binnacle`] is a valid one.
-///
-/// [`Binnacle`]: super::Binnacle
+/// Written form of a binnacle on board; docs/binnacle.md explains every field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "openapi", schema(as = Binnacle))]
 #[serde(deny_unknown_fields)]
 pub struct BinnacleForm {
-    /// Version of the form.
+    /// Version of the form: 1.
     pub version: u32,
     /// Maker's serial number.
     pub serial: String,
@@ -29,7 +27,7 @@ pub struct BinnacleForm {
     pub inventory: Inventory,
     /// Setting of the correctors.
     pub setting: Setting,
-    /// Measured effects, which take precedence over the formulas.
+    /// Measured effects of the correctors, which take precedence over the formulas.
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(value_type = Vec<Object>))]
     pub calibration: Vec<Calibrated>,

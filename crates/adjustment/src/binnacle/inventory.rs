@@ -27,7 +27,7 @@ pub struct Lot {
     /// Kind of the magnets.
     #[cfg_attr(feature = "openapi", schema(example = "200 mm"))]
     pub magnet: String,
-    /// Number of magnets.
+    /// Number of magnets, including those in use.
     pub count: u16,
     /// Tested moment, A·m²; without it the nominal moment applies.
     #[serde(default)]

@@ -41,7 +41,7 @@ pub struct Tray {
     pub magnet: String,
     /// Number of magnets.
     pub count: u8,
-    /// Direction of the red ends.
+    /// Direction of the red, north-seeking ends.
     pub red: Red,
 }
 

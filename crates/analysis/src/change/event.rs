@@ -38,13 +38,30 @@ impl EventKind {
     }
 }
 
+/// Earliest and latest row at which a change may have begun.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RowSpan {
+    pub(crate) earliest: usize,
+    pub(crate) latest: usize,
+}
+
+impl RowSpan {
+    /// Returns the span of a single row.
+    pub(crate) fn at(row: usize) -> RowSpan {
+        RowSpan {
+            earliest: row,
+            latest: row,
+        }
+    }
+}
+
 /// An event found among the rows.
 #[derive(Clone, Debug)]
 pub(crate) struct Event {
     pub(crate) kind: EventKind,
-    /// First row after it, and the earliest and latest rows that are possible.
+    /// First row after it, and the rows that are possible.
     pub(crate) first: usize,
-    pub(crate) between: (usize, usize),
+    pub(crate) between: RowSpan,
     /// Row at which it was detected.
     pub(crate) detected_row: usize,
     /// Log-likelihood ratios against no change, by kind.
@@ -133,7 +150,7 @@ mod tests {
         Event {
             kind: event_kind,
             first: 0,
-            between: (0, 0),
+            between: RowSpan::at(0),
             detected_row: 0,
             leads: [0.0; 4],
             before: snapshot(&known),

@@ -31,7 +31,7 @@ mod thresholds;
 pub(crate) use cause::{Circumstances, causes};
 pub(crate) use detect::detect;
 pub(crate) use detection::{CargoPeriod, DetectionInput, PossibleReturn, UndetectedStep};
-pub(crate) use event::{Event, EventKind, Snapshot};
+pub(crate) use event::{Event, EventKind, RowSpan, Snapshot};
 pub(crate) use likelihood_ratio::tempered_odds;
 pub(crate) use port_calls::{follows_port_call, rows_since};
 pub(crate) use thresholds::SAILED_SINCE_ROWS;

@@ -12,33 +12,44 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 const VERSION: u32 = 1;
 
+/// A fitted model.
 #[derive(Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "openapi", schema(as = Model))]
 #[serde(rename = "Model")]
 pub(super) struct Form {
+    /// Version of this form: 1. It is not the number of the model.
     #[serde(default = "version", deserialize_with = "known_version")]
     #[cfg_attr(feature = "openapi", schema(required))]
     version: u32,
+    /// Poisson's parameters over the shielding factor λ.
     parameters_over_lambda: Parameters,
+    /// Constant added to the exact deviation: alignment, reference and variation offsets,
+    /// degrees, east positive.
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(required))]
     constant_deg: f64,
+    /// Covariance, 8 × 8: the parameters in their order, the constant last.
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(required, value_type = Option<Vec<Vec<f64>>>))]
     covariance: Option<Covariance>,
+    /// Parameters determined by the data.
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(required))]
     identifiable: Option<Identifiable>,
+    /// Root mean square of the residuals, degrees.
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(required))]
     rms_deg: Option<f64>,
+    /// Number of samples with weight.
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(required))]
     samples_used: u64,
+    /// Number of samples left out or rejected as outliers.
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(required))]
     samples_rejected: u64,
+    /// Evidence behind the model; absent in a model stored without.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     quality: Option<Quality>,
 }

@@ -79,15 +79,22 @@ pub struct Quality {
 /// rests on the prior alone, 1 on the data alone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[allow(missing_docs)] // the names are those of the parameters
 pub struct FromData {
+    /// Share for bx, 0 to 1.
     pub bx_nt: f64,
+    /// Share for χ13, 0 to 1.
     pub chi13: f64,
+    /// Share for by, 0 to 1.
     pub by_nt: f64,
+    /// Share for χ23, 0 to 1.
     pub chi23: f64,
+    /// Share for χ11 − χ22, 0 to 1.
     pub chi11_minus_chi22: f64,
+    /// Share for χ12, 0 to 1.
     pub chi12: f64,
+    /// Share for χ21, 0 to 1.
     pub chi21: f64,
+    /// Share for the constant, 0 to 1.
     pub constant_deg: f64,
 }
 

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 /// Headings and magnetic latitudes that would narrow the band most.
+///
+/// A watch is four hours on one compass heading. Three watches are on three successive days.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct SailNext {
@@ -36,9 +38,9 @@ pub struct Advice<S> {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Band {
-    /// Root mean square.
+    /// Root mean square, degrees.
     pub rms_deg: f64,
-    /// Band on the worst heading.
+    /// Band on the worst heading, degrees.
     pub worst_deg: f64,
 }
 
@@ -73,7 +75,7 @@ pub struct HeadingSuggestion {
 pub struct LatitudeSuggestion {
     /// Southern edge, degrees of magnetic latitude, north positive.
     pub magnetic_latitude_from_deg: i16,
-    /// Northern edge.
+    /// Northern edge, degrees of magnetic latitude, north positive.
     pub magnetic_latitude_to_deg: i16,
     /// Headings of three watches there, in this order.
     pub headings: Vec<HeadingRange>,
@@ -92,6 +94,16 @@ enum HeadingAdvice {}
 enum LatitudeAdvice {}
 
 #[cfg(feature = "openapi")]
-crate::openapi::named_schema!(HeadingAdvice, "HeadingAdvice", Advice<HeadingSuggestion>);
+crate::openapi::named_schema!(
+    HeadingAdvice,
+    "HeadingAdvice",
+    Advice<HeadingSuggestion>,
+    HeadingSuggestion
+);
 #[cfg(feature = "openapi")]
-crate::openapi::named_schema!(LatitudeAdvice, "LatitudeAdvice", Advice<LatitudeSuggestion>);
+crate::openapi::named_schema!(
+    LatitudeAdvice,
+    "LatitudeAdvice",
+    Advice<LatitudeSuggestion>,
+    LatitudeSuggestion
+);

@@ -38,16 +38,16 @@ pub struct Change {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Step {
-    /// Fore and aft, forward positive.
+    /// Fore and aft, nT, forward positive.
     #[cfg_attr(feature = "openapi", schema(example = 1850.0))]
     pub bx_nt: f64,
-    /// Athwartships, starboard positive.
+    /// Athwartships, nT, starboard positive.
     #[cfg_attr(feature = "openapi", schema(example = -640.0))]
     pub by_nt: f64,
-    /// Standard error of `bx_nt`.
+    /// Standard error of `bx_nt`, nT.
     #[cfg_attr(feature = "openapi", schema(example = 120.0))]
     pub bx_se_nt: f64,
-    /// Standard error of `by_nt`.
+    /// Standard error of `by_nt`, nT.
     #[cfg_attr(feature = "openapi", schema(example = 95.0))]
     pub by_se_nt: f64,
 }

@@ -20,7 +20,7 @@ pub struct ReferenceCheck {
     #[serde(default = "widest_deg")]
     #[cfg_attr(feature = "openapi", schema(required))]
     pub failed_beyond_deg: f64,
-    /// Standard deviation of the reference's remaining constant error.
+    /// Standard deviation of the reference's remaining constant error, degrees.
     pub constant_sd_deg: f64,
     /// Number of samples whose gyro heading was dropped.
     #[serde(default)]

@@ -14,7 +14,7 @@ pub enum FitError {
         /// Number of readings.
         readings: u64,
     },
-    /// Every observation has the weight 0.
+    /// Every observation has the weight 0; only in fits of a file.
     #[error("the weight is 0 in all of {samples} samples")]
     NoWeight {
         /// Number of samples.
@@ -28,7 +28,7 @@ pub enum FitError {
         /// Least number of samples.
         needed: u64,
     },
-    /// Too few headings.
+    /// The samples lie on too few headings.
     #[error(
         "headings in {found} of 24 sectors of 15 degrees, the widest gap {widest_gap_deg:.0} \
          degrees; at least {needed} sectors are needed and no gap over {allowed_gap_deg:.0} \
@@ -49,7 +49,7 @@ pub enum FitError {
         #[cfg_attr(feature = "openapi", schema(required, value_type = Vec<[u32; 2]>))]
         missing_deg: Vec<(u32, u32)>,
     },
-    /// The earth's horizontal field is too weak for a compass.
+    /// The earth's horizontal field is too weak for a compass in all samples.
     #[error(
         "horizontal field of at most {strongest_nt:.0} nT; a compass needs at least \
          {needed_nt:.0} nT"
@@ -68,7 +68,8 @@ pub enum FitError {
         h_nt: f64,
     },
     /// All observations have the same dip: only the sums bx + χ13 Z and by + χ23 Z are
-    /// determined, and the paper's equations have no unique solution.
+    /// determined, and the paper's equations have no unique solution. Only in fits without a
+    /// prior.
     #[error(
         "all samples lie at one magnetic latitude: bx and chi13, by and chi23 cannot be separated"
     )]
@@ -94,7 +95,8 @@ pub enum FitError {
         /// Number of readings with a stuck reference.
         readings: u64,
     },
-    /// The residuals of the best fit exceed any instrument error.
+    /// The residuals of the best fit exceed any instrument error: a variation of the wrong
+    /// sign, exchanged columns, or a stuck reference.
     #[error(
         "residuals of {residual_deg:.1} degrees, more than any instruments' {allowed_deg:.0}: no \
          ship explains these; check the sign of the variation, the order of the columns, and \
@@ -106,7 +108,7 @@ pub enum FitError {
         /// Greatest allowed value, degrees.
         allowed_deg: f64,
     },
-    /// The iteration did not converge.
+    /// The iteration did not converge: the samples contradict each other, or any ship.
     #[error(
         "the fit did not converge: the samples contradict each other or any ship; check the sign \
          of the variation, the order of the columns, and whether the compass or the reference was \

@@ -5,10 +5,13 @@ use serde::{Deserialize, Serialize};
 
 /// A heading alongside.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = PlannedBerthHeading))]
 pub struct BerthHeading {
     /// Degrees, true.
     pub heading_deg: f64,
-    /// Source of the heading.
+    /// Source of the heading: `given`, or earlier calls at the same `berth` or `port`.
+    #[cfg_attr(feature = "openapi", schema(value_type = String))]
     pub source: HeadingSource,
 }
 
@@ -64,7 +67,7 @@ pub fn berth_heading(call: &super::PortCall, earlier: &[Observed]) -> Option<Ber
     }
 }
 
-/// The mean direction, where the directions agree (resultant length 0.9 or
+/// Returns the mean direction, where the directions agree (resultant length 0.9 or
 /// more).
 fn mean(headings: impl Iterator<Item = f64>) -> Option<f64> {
     let (mut north, mut east, mut count) = (0.0, 0.0, 0.0);

@@ -18,9 +18,9 @@ use crate::time::Instant;
 use std::collections::BTreeMap;
 use std::io::{BufRead, Read, Write};
 
-/// The longest line, in bytes.
+/// Maximum length of a line, bytes.
 const MAX_LINE_BYTES: u64 = 4096;
-/// The most calls of a file.
+/// Maximum number of calls of a file.
 pub const MAX_CALLS: usize = 50_000;
 
 const COLUMNS: [&str; 9] = [
@@ -59,34 +59,34 @@ pub fn read(
     faults: &mut FileErrors,
 ) -> Result<Rows, FileError> {
     let (mut header, mut rows, mut line) = (None, Rows::default(), 0);
-    let (mut separator, mut taken) = (',', 0);
+    let (mut separator, mut count) = (',', 0);
     let mut ids = BTreeMap::new();
-    while let Some(text) = next_line(&mut file, line + 1)? {
+    while let Some(text) = read_line(&mut file, line + 1)? {
         line += 1;
         if text.trim().is_empty() {
             continue;
         }
         let Some(header) = &header else {
-            separator = separator_of(&text, line)?;
-            header = Some(columns(cells(&text, separator, line)?, line)?);
+            separator = find_separator(&text, line)?;
+            header = Some(parse_header(split_cells(&text, separator, line)?, line)?);
             continue;
         };
-        if taken == MAX_CALLS {
+        if count == MAX_CALLS {
             return Err(FileError::new(
                 line,
                 "row",
                 format!("more than {MAX_CALLS} calls"),
             ));
         }
-        let read = cells(&text, separator, line)
-            .and_then(|cells| row(header, &cells, separator, vessel, line))
-            .and_then(|call| current(call, now, line))
+        let read = split_cells(&text, separator, line)
+            .and_then(|cells| parse_row(header, &cells, separator, vessel, line))
+            .and_then(|call| check_call(call, now, line))
             .and_then(|call| match call {
-                Some(call) => must_be_new(&mut ids, &call, line).map(|()| Some(call)),
+                Some(call) => check_id(&mut ids, &call, line).map(|()| Some(call)),
                 None => Ok(None),
             });
         // Past calls are left out, however many.
-        taken += usize::from(!matches!(read, Ok(None)));
+        count += usize::from(!matches!(read, Ok(None)));
         match read {
             Ok(Some(call)) => rows.calls.push(Located { line, call }),
             Ok(None) => rows.over += 1,
@@ -99,18 +99,18 @@ pub fn read(
     Ok(rows)
 }
 
-/// The call, checked; `None` for a past one.
-fn current(call: PortCall, now: Instant, line: usize) -> Result<Option<PortCall>, FileError> {
+/// Checks a call; `None` for a past one.
+fn check_call(call: PortCall, now: Instant, line: usize) -> Result<Option<PortCall>, FileError> {
     if call.eta < call.etd && call.etd <= now {
         return Ok(None);
     }
-    let checked = call.checked(now).and_then(|()| call.must_be_near(now));
+    let checked = call.checked(now).and_then(|()| call.check_horizon(now));
     checked.map_err(|error| FileError::new(line, error.field, error.detail))?;
     Ok(Some(call))
 }
 
 /// Checks that the call's id is new for its ship.
-pub(super) fn must_be_new(
+pub(super) fn check_id(
     ids: &mut BTreeMap<(String, String), usize>,
     call: &PortCall,
     line: usize,
@@ -118,7 +118,7 @@ pub(super) fn must_be_new(
     match ids.insert((call.vessel.clone(), call.id.clone()), line) {
         None => Ok(()),
         Some(first) => {
-            let what = format!("{:?} stands on line {first} already", call.id);
+            let what = format!("{:?} is already on line {first}", call.id);
             Err(FileError::new(line, "id", what))
         }
     }
@@ -151,12 +151,12 @@ pub fn write(calls: &[PortCall], out: impl Write) -> std::io::Result<()> {
     out.flush()
 }
 
-/// True where a spreadsheet would read a formula.
+/// Returns true where a spreadsheet would read a formula.
 fn is_formula(text: &str) -> bool {
     text.starts_with(['=', '+', '-', '@', '\t', '\r'])
 }
 
-/// A cell that no spreadsheet reads as a formula.
+/// Returns a cell that no spreadsheet reads as a formula.
 pub fn escape_formula(text: &str) -> String {
     let apostrophes = text.trim_start_matches('\'');
     if is_formula(apostrophes) {
@@ -166,7 +166,7 @@ pub fn escape_formula(text: &str) -> String {
     }
 }
 
-/// The cell before [`escape_formula`].
+/// Returns the cell before [`escape_formula`].
 fn unescape_formula(text: &str) -> &str {
     match text.strip_prefix('\'') {
         Some(rest) if is_formula(rest.trim_start_matches('\'')) => rest,
@@ -174,7 +174,7 @@ fn unescape_formula(text: &str) -> &str {
     }
 }
 
-fn next_line(file: &mut impl BufRead, line: usize) -> Result<Option<String>, FileError> {
+fn read_line(file: &mut impl BufRead, line: usize) -> Result<Option<String>, FileError> {
     let failed = |what: String| FileError::new(line, "row", what);
     let mut bytes = Vec::new();
     let read = file
@@ -199,7 +199,7 @@ fn next_line(file: &mut impl BufRead, line: usize) -> Result<Option<String>, Fil
 
 /// Finds the separator of a file by its first line: column names contain
 /// neither.
-fn separator_of(header: &str, line: usize) -> Result<char, FileError> {
+fn find_separator(header: &str, line: usize) -> Result<char, FileError> {
     match (header.contains(','), header.contains(';')) {
         (true, true) => {
             let what = "has both commas and semicolons between its fields; use only one of them";
@@ -212,7 +212,7 @@ fn separator_of(header: &str, line: usize) -> Result<char, FileError> {
 
 /// Splits a line into cells, trimmed (RFC 4180, but for line ends within
 /// quotes).
-fn cells(text: &str, separator: char, line: usize) -> Result<Vec<String>, FileError> {
+fn split_cells(text: &str, separator: char, line: usize) -> Result<Vec<String>, FileError> {
     let mut cells = vec![String::new()];
     let mut quoted = false;
     let mut letters = text.trim_end_matches(['\r', '\n']).chars().peekable();
@@ -235,7 +235,7 @@ fn cells(text: &str, separator: char, line: usize) -> Result<Vec<String>, FileEr
     Ok(cells.iter().map(|cell| cell.trim().to_owned()).collect())
 }
 
-fn columns(header: Vec<String>, line: usize) -> Result<Vec<String>, FileError> {
+fn parse_header(header: Vec<String>, line: usize) -> Result<Vec<String>, FileError> {
     for (at, name) in header.iter().enumerate() {
         if !COLUMNS.contains(&name.as_str()) {
             let what = format!("is not a column; known columns are {}", COLUMNS.join(", "));
@@ -253,7 +253,7 @@ fn columns(header: Vec<String>, line: usize) -> Result<Vec<String>, FileError> {
     Ok(header)
 }
 
-fn row(
+fn parse_row(
     header: &[String],
     cells: &[String],
     separator: char,
@@ -293,7 +293,7 @@ fn row(
     let port = PortCode::parse(needed("port")?)
         .map_err(|error| FileError::new(line, "port", error.to_string()))?;
     if ports::find(port).is_none() {
-        return Err(FileError::new(line, "port", ports::unknown(port)));
+        return Err(FileError::new(line, "port", ports::describe_unknown(port)));
     }
     let (eta, etd) = (instant("eta")?, instant("etd")?);
     let vessel = cell("vessel").or(vessel);

@@ -5,11 +5,12 @@
 
 use std::fmt;
 
-/// The most faults of a file that are listed.
+/// Maximum number of faults of a file that are listed.
 pub const MAX_LISTED: usize = 50;
-/// The most characters of a column's name and of a detail, which repeat text of
-/// the file.
-const LONGEST: (usize, usize) = (60, 400);
+/// Maximum number of characters of a column's name, which repeats text of the file.
+const MAX_FIELD_CHARS: usize = 60;
+/// Maximum number of characters of a detail, which repeats text of the file.
+const MAX_DETAIL_CHARS: usize = 400;
 
 /// A fault of a file, with its place.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
@@ -29,8 +30,8 @@ impl FileError {
         let detail: String = detail.into();
         FileError {
             line,
-            field: field.chars().take(LONGEST.0).collect(),
-            detail: detail.chars().take(LONGEST.1).collect(),
+            field: field.chars().take(MAX_FIELD_CHARS).collect(),
+            detail: detail.chars().take(MAX_DETAIL_CHARS).collect(),
         }
     }
 }
@@ -38,56 +39,60 @@ impl FileError {
 /// All faults of a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FileErrors {
-    named: Vec<FileError>,
-    more: usize,
+    listed: Vec<FileError>,
+    unlisted: usize,
 }
 
 impl FileErrors {
     /// Adds a fault.
     pub fn push(&mut self, error: FileError) {
-        let at = self.named.partition_point(|known| *known <= error);
-        self.named.insert(at, error);
-        if self.named.len() > MAX_LISTED {
-            self.named.pop();
-            self.more += 1;
+        let at = self.listed.partition_point(|known| *known <= error);
+        self.listed.insert(at, error);
+        if self.listed.len() > MAX_LISTED {
+            self.listed.pop();
+            self.unlisted += 1;
         }
     }
 
-    /// Returns `made` if there is no fault, and otherwise the faults.
+    /// Returns `value` if there is no fault.
     ///
     /// # Errors
-    /// Itself, unless it is empty.
-    pub fn unless<T>(self, made: T) -> Result<T, FileErrors> {
-        if self.is_empty() { Ok(made) } else { Err(self) }
+    /// Fails with the faults, if there are any.
+    pub fn into_result<T>(self, value: T) -> Result<T, FileErrors> {
+        if self.is_empty() {
+            Ok(value)
+        } else {
+            Err(self)
+        }
     }
 
-    /// True without faults.
+    /// Returns true without faults.
     pub fn is_empty(&self) -> bool {
-        self.named.is_empty()
+        self.listed.is_empty()
     }
 
-    /// The listed faults, by line.
-    pub fn named(&self) -> &[FileError] {
-        &self.named
+    /// Returns the listed faults, by line.
+    pub fn listed(&self) -> &[FileError] {
+        &self.listed
     }
 }
 
 impl From<FileError> for FileErrors {
     fn from(error: FileError) -> FileErrors {
         FileErrors {
-            named: vec![error],
-            more: 0,
+            listed: vec![error],
+            unlisted: 0,
         }
     }
 }
 
 impl fmt::Display for FileErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (at, error) in self.named.iter().enumerate() {
+        for (at, error) in self.listed.iter().enumerate() {
             let between = if at == 0 { "" } else { "; " };
             write!(f, "{between}{error}")?;
         }
-        match self.more {
+        match self.unlisted {
             0 => Ok(()),
             1 => f.write_str("; and 1 more"),
             more => write!(f, "; and {more} more"),

@@ -16,9 +16,9 @@ use crate::ports::PortCode;
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
 
-/// The longest stay of a call; a ship that stays longer is laid up.
+/// Maximum stay of a call, days; a ship that stays longer is laid up.
 pub const MAX_STAY_DAYS: f64 = 120.0;
-/// The most days that a call may lie ahead.
+/// Maximum number of days to the arrival.
 const MAX_DAYS_AHEAD: f64 = 730.0;
 
 /// A ship's call at a port.
@@ -110,11 +110,11 @@ impl PortCall {
         }
     }
 
-    /// Refuses a call further ahead than anybody plans: its year is wrong.
+    /// Refuses a call beyond the planning horizon, whose year is likely wrong.
     ///
     /// # Errors
     /// [`CallError`] of its ETA.
-    pub fn must_be_near(&self, now: Instant) -> Result<(), CallError> {
+    pub fn check_horizon(&self, now: Instant) -> Result<(), CallError> {
         if self.eta.hours_since(now) <= MAX_DAYS_AHEAD * 24.0 {
             return Ok(());
         }
@@ -149,13 +149,13 @@ impl PortCall {
 
 /// Finds the first two calls of one ship that overlap: the indices of the later
 /// one, and of the one that has not ended by then.
-pub fn overlap(calls: &[PortCall]) -> Option<(usize, usize)> {
-    overlaps(calls).into_iter().next()
+pub fn find_overlap(calls: &[PortCall]) -> Option<(usize, usize)> {
+    find_overlaps(calls).into_iter().next()
 }
 
 /// Finds all calls of one ship that begin before an earlier one has ended, with
 /// that one.
-pub fn overlaps(calls: &[PortCall]) -> Vec<(usize, usize)> {
+pub fn find_overlaps(calls: &[PortCall]) -> Vec<(usize, usize)> {
     let mut order: Vec<usize> = (0..calls.len()).collect();
     order.sort_by_key(|at| (&calls[*at].vessel, calls[*at].eta, *at));
     let pairs = order.windows(2).map(|pair| (pair[1], pair[0]));
@@ -165,7 +165,7 @@ pub fn overlaps(calls: &[PortCall]) -> Vec<(usize, usize)> {
     overlapping.collect()
 }
 
-/// The probability that a normal error of this size is below a margin; 1 or 0
+/// Returns the probability that a normal error of this size is below a margin; 1 or 0
 /// without an error.
 fn below(margin: f64, sigma: f64) -> f64 {
     if sigma <= 0.0 {
@@ -176,7 +176,7 @@ fn below(margin: f64, sigma: f64) -> f64 {
     if z >= 0.0 { 1.0 - tail } else { tail }
 }
 
-/// Half the complementary error function of a non-negative number (Abramowitz
+/// Returns half the complementary error function of a non-negative number (Abramowitz
 /// and Stegun 1964, 7.1.26: within 1.5e-7).
 fn half_erfc(x: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.327_591_1 * x);
@@ -226,9 +226,9 @@ mod tests {
         (next.eta, next.etd) = (first.etd, at("2026-12-05T06:00:00Z"));
         other.vessel = "w".to_owned();
         let calls = [next.clone(), other.clone(), first.clone()];
-        assert_eq!(overlap(&calls), None);
+        assert_eq!(find_overlap(&calls), None);
         next.eta = at("2026-12-03T05:59:59Z");
-        assert_eq!(overlap(&[next, other, first]), Some((0, 2)));
+        assert_eq!(find_overlap(&[next, other, first]), Some((0, 2)));
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! Checks the consistency of an input.
 
 use super::{Checked, Input, InputError, check_firm};
-use crate::calls::overlap;
+use crate::calls::find_overlap;
 use crate::ports;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The longest list.
+/// Maximum length of a list.
 const MAX_LIST: usize = 50_000;
-/// The most candidates of all jobs, as [`candidates`] counts them. Each takes about 250
+/// Maximum number of candidates of all jobs, as [`max_candidates`] counts them. Each takes about 250
 /// bytes and a microsecond before the search begins.
 const MAX_CANDIDATES: u64 = 3_000_000;
 
@@ -17,9 +17,9 @@ type Result<T> = std::result::Result<T, InputError>;
 ///
 /// # Errors
 /// The first list that is too long, or the number of candidates.
-pub fn must_fit(input: &Input) -> Result<()> {
-    lists(input)?;
-    match candidates(input) {
+pub fn check_size(input: &Input) -> Result<()> {
+    check_lengths(input)?;
+    match max_candidates(input) {
         count if count > MAX_CANDIDATES => Err(InputError::new(
             "port_calls",
             format!(
@@ -31,9 +31,9 @@ pub fn must_fit(input: &Input) -> Result<()> {
     }
 }
 
-/// An upper bound of the candidates of all jobs: each need on each day of its
+/// Returns an upper bound of the candidates of all jobs: each need on each day of its
 /// ship's calls by each firm of the port.
-fn candidates(input: &Input) -> u64 {
+fn max_candidates(input: &Input) -> u64 {
     let (mut needs, mut firms) = (BTreeMap::new(), BTreeMap::new());
     let of_needs = input.needs.iter().map(|need| &need.vessel);
     for vessel in of_needs.chain(input.compasses.iter().map(|compass| &compass.vessel)) {
@@ -52,40 +52,40 @@ fn candidates(input: &Input) -> u64 {
 }
 
 pub(super) fn check(input: Input) -> Result<Checked> {
-    lists(&input)?;
-    settings(&input)?;
-    let vessels = names(
+    check_lengths(&input)?;
+    check_settings(&input)?;
+    let vessels = collect_ids(
         "vessels",
         input.vessels.iter().map(|vessel| vessel.id.as_str()),
     )?;
     let needs = input.needs.iter().map(|need| need.id.as_str());
-    let mut compasses = names("needs", needs)?;
+    let mut compasses = collect_ids("needs", needs)?;
     for (at, compass) in input.compasses.iter().enumerate() {
         let path = format!("compasses[{at}]");
-        one_more(&mut compasses, &path, &compass.id)?;
-        known(
+        insert_id(&mut compasses, &path, &compass.id)?;
+        check_reference(
             &vessels,
             format!("{path}.vessel"),
             &compass.vessel,
             "vessel",
         )?;
-        facts(&format!("{path}.facts"), &compass.facts)?;
+        check_facts(&format!("{path}.facts"), &compass.facts)?;
     }
     for (at, need) in input.needs.iter().enumerate() {
-        known(
+        check_reference(
             &vessels,
             format!("needs[{at}].vessel"),
             &need.vessel,
             "vessel",
         )?;
     }
-    let calls = names(
+    let calls = collect_ids(
         "port_calls",
         input.port_calls.iter().map(|call| call.id.as_str()),
     )?;
-    calls_of(&input, &vessels)?;
-    must_fit(&input)?;
-    let firms = names("firms", input.firms.iter().map(|firm| firm.id.as_str()))?;
+    check_calls(&input, &vessels)?;
+    check_size(&input)?;
+    let firms = collect_ids("firms", input.firms.iter().map(|firm| firm.id.as_str()))?;
     for (at, firm) in input.firms.iter().enumerate() {
         check_firm(firm).map_err(|error| {
             InputError::new(format!("firms[{at}].{}", error.field), error.detail)
@@ -93,7 +93,7 @@ pub(super) fn check(input: Input) -> Result<Checked> {
     }
     let mut met: BTreeSet<&str> = BTreeSet::new();
     for (at, job) in input.former.iter().enumerate() {
-        known(&firms, format!("former[{at}].firm"), &job.firm, "firm")?;
+        check_reference(&firms, format!("former[{at}].firm"), &job.firm, "firm")?;
         if job.needs.is_empty() {
             return Err(InputError::new(
                 format!("former[{at}].needs"),
@@ -102,7 +102,7 @@ pub(super) fn check(input: Input) -> Result<Checked> {
         }
         for (of, need) in job.needs.iter().enumerate() {
             let path = format!("former[{at}].needs[{of}]");
-            known(&compasses, path.clone(), need, "need or compass")?;
+            check_reference(&compasses, path.clone(), need, "need or compass")?;
             if !met.insert(need) {
                 return Err(InputError::new(
                     path,
@@ -116,13 +116,13 @@ pub(super) fn check(input: Input) -> Result<Checked> {
         }
     }
     for (at, declined) in input.declined.iter().enumerate() {
-        known(
+        check_reference(
             &firms,
             format!("declined[{at}].firm"),
             &declined.firm,
             "firm",
         )?;
-        known(
+        check_reference(
             &compasses,
             format!("declined[{at}].need"),
             &declined.need,
@@ -132,7 +132,7 @@ pub(super) fn check(input: Input) -> Result<Checked> {
     Ok(Checked(input))
 }
 
-fn lists(input: &Input) -> Result<()> {
+fn check_lengths(input: &Input) -> Result<()> {
     let lengths = [
         ("vessels", input.vessels.len()),
         ("needs", input.needs.len()),
@@ -153,27 +153,27 @@ fn lists(input: &Input) -> Result<()> {
     Ok(())
 }
 
-fn settings(input: &Input) -> Result<()> {
+fn check_settings(input: &Input) -> Result<()> {
     if !(1..=730).contains(&input.horizon_days) {
-        let what = format!("{} is not within 1 to 730", input.horizon_days);
-        return Err(InputError::new("horizon_days", what));
+        let detail = format!("{} is not within 1 to 730", input.horizon_days);
+        return Err(InputError::new("horizon_days", detail));
     }
     if !(0.5..=24.0).contains(&input.weights.job_h) {
-        let what = format!("{} is not within 0.5 to 24", input.weights.job_h);
-        return Err(InputError::new("weights.job_h", what));
+        let detail = format!("{} is not within 0.5 to 24", input.weights.job_h);
+        return Err(InputError::new("weights.job_h", detail));
     }
     Ok(())
 }
 
-fn names<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<BTreeSet<&'a str>> {
+fn collect_ids<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<BTreeSet<&'a str>> {
     let mut names = BTreeSet::new();
     for (at, id) in ids.enumerate() {
-        one_more(&mut names, &format!("{list}[{at}]"), id)?;
+        insert_id(&mut names, &format!("{list}[{at}]"), id)?;
     }
     Ok(names)
 }
 
-fn one_more<'a>(names: &mut BTreeSet<&'a str>, path: &str, id: &'a str) -> Result<()> {
+fn insert_id<'a>(names: &mut BTreeSet<&'a str>, path: &str, id: &'a str) -> Result<()> {
     if id.trim().is_empty() || id.chars().count() > 100 {
         return Err(InputError::new(
             format!("{path}.id"),
@@ -189,17 +189,17 @@ fn one_more<'a>(names: &mut BTreeSet<&'a str>, path: &str, id: &'a str) -> Resul
     Ok(())
 }
 
-fn known(names: &BTreeSet<&str>, path: String, name: &str, what: &str) -> Result<()> {
+fn check_reference(names: &BTreeSet<&str>, path: String, name: &str, kind: &str) -> Result<()> {
     if names.contains(name) {
         return Ok(());
     }
     Err(InputError::new(
         path,
-        format!("there is no {what} {name:?}"),
+        format!("there is no {kind} {name:?}"),
     ))
 }
 
-fn facts(path: &str, compass: &crate::needs::Compass) -> Result<()> {
+fn check_facts(path: &str, compass: &crate::needs::Compass) -> Result<()> {
     let degrees = |path: String, value: f64| {
         let fine = (-180.0..=180.0).contains(&value);
         fine.then_some(())
@@ -227,13 +227,13 @@ fn facts(path: &str, compass: &crate::needs::Compass) -> Result<()> {
     Ok(())
 }
 
-fn calls_of(input: &Input, vessels: &BTreeSet<&str>) -> Result<()> {
+fn check_calls(input: &Input, vessels: &BTreeSet<&str>) -> Result<()> {
     for (at, call) in input.port_calls.iter().enumerate() {
         let path = format!("port_calls[{at}]");
-        known(vessels, format!("{path}.vessel"), &call.vessel, "vessel")?;
+        check_reference(vessels, format!("{path}.vessel"), &call.vessel, "vessel")?;
         if ports::find(call.port).is_none() {
-            let what = ports::unknown(call.port);
-            return Err(InputError::new(format!("{path}.port"), what));
+            let detail = ports::describe_unknown(call.port);
+            return Err(InputError::new(format!("{path}.port"), detail));
         }
         if let Err(error) = call.checked(input.now) {
             return Err(InputError::new(
@@ -242,13 +242,13 @@ fn calls_of(input: &Input, vessels: &BTreeSet<&str>) -> Result<()> {
             ));
         }
     }
-    let Some((at, of)) = overlap(&input.port_calls) else {
+    let Some((at, of)) = find_overlap(&input.port_calls) else {
         return Ok(());
     };
     let (next, first) = (&input.port_calls[at], &input.port_calls[of]);
-    let what = format!(
+    let detail = format!(
         "{} overlaps call {:?} of the same ship, which ends {}",
         next.eta, first.id, first.etd
     );
-    Err(InputError::new(format!("port_calls[{at}].eta"), what))
+    Err(InputError::new(format!("port_calls[{at}].eta"), detail))
 }

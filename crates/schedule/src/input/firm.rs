@@ -24,25 +24,25 @@ pub struct Firm {
     #[serde(default)]
     pub flags: Vec<Flag>,
     /// Teams on a working day.
-    #[serde(default = "one")]
+    #[serde(default = "default_teams")]
     pub teams: u32,
     /// Jobs per team and day in one port.
-    #[serde(default = "one")]
+    #[serde(default = "default_teams")]
     pub jobs_a_team_day: u32,
     /// Teams that are booked elsewhere, and cannot be planned.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub taken: Vec<Taken>,
     /// Working days of the week.
-    #[serde(default = "working_week")]
+    #[serde(default = "default_working_days")]
     pub working_days: Vec<Weekday>,
     /// Days on which it is closed.
     #[serde(default)]
     pub closed: Vec<NaiveDate>,
     /// Hour at which its day begins, in the port's time.
-    #[serde(default = "eight")]
+    #[serde(default = "default_first_hour")]
     pub first_hour: f64,
     /// Hour at which its day ends.
-    #[serde(default = "eighteen")]
+    #[serde(default = "default_last_hour")]
     pub last_hour: f64,
     /// Fee for a job.
     pub fee_eur: Eur,
@@ -66,33 +66,36 @@ pub struct Taken {
 
 /// A port that a firm serves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ServedPort {
-    /// Cost of sending a team there for a day.
+    /// UN/LOCODE of the port.
+    #[cfg_attr(feature = "openapi", schema(value_type = String, example = "NLRTM"))]
     pub port: PortCode,
-    /// Cost of sending a team there for a day.
+    /// Cost of sending a team there for a day, euros.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(value_type = f64, minimum = 0, maximum = 1_000_000))]
     pub travel_eur: Eur,
 }
 
 impl Firm {
-    /// True on a working day.
+    /// Returns true on a working day.
     pub fn works(&self, day: NaiveDate) -> bool {
         self.working_days.contains(&day.weekday()) && !self.closed.contains(&day)
     }
 
-    /// Number of teams available on a day.
+    /// Returns the number of teams available on a day.
     pub fn teams_on(&self, day: NaiveDate) -> u32 {
         let taken = self.taken.iter().filter(|taken| taken.day == day);
         taken.fold(self.teams, |left, taken| left.saturating_sub(taken.teams))
     }
 
-    /// True if a flag accepts its adjusters; an unknown flag may not.
+    /// Returns true if a flag accepts its adjusters; an unknown flag may not.
     pub fn is_accepted_by(&self, flag: Option<Flag>) -> bool {
         self.flags.is_empty() || flag.is_some_and(|flag| self.flags.contains(&flag))
     }
 
-    /// Cost of a team's day in a port, if the firm serves it.
+    /// Returns the cost of a team's day in a port, if the firm serves it.
     pub fn travel(&self, port: PortCode) -> Option<Eur> {
         let served = self.ports.iter().find(|served| served.port == port)?;
         Some(served.travel_eur)
@@ -104,11 +107,11 @@ impl Firm {
     }
 }
 
-fn one() -> u32 {
+fn default_teams() -> u32 {
     1
 }
 
-fn working_week() -> Vec<Weekday> {
+fn default_working_days() -> Vec<Weekday> {
     vec![
         Weekday::Mon,
         Weekday::Tue,
@@ -118,10 +121,10 @@ fn working_week() -> Vec<Weekday> {
     ]
 }
 
-fn eight() -> f64 {
+fn default_first_hour() -> f64 {
     8.0
 }
 
-fn eighteen() -> f64 {
+fn default_last_hour() -> f64 {
     18.0
 }

@@ -48,7 +48,7 @@ pub fn check_firm(firm: &Firm) -> Result<(), FirmError> {
     let mut served = BTreeSet::new();
     for port in &firm.ports {
         if ports::find(port.port).is_none() {
-            return wrong("ports", &ports::unknown(port.port));
+            return wrong("ports", &ports::describe_unknown(port.port));
         }
         if !served.insert(port.port) {
             return wrong("ports", &format!("{} appears twice", port.port));

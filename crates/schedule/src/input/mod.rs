@@ -12,7 +12,7 @@ mod firm_check;
 mod read;
 mod weights;
 
-pub use check::must_fit;
+pub use check::check_size;
 pub use error::InputError;
 pub use firm::{Firm, ServedPort, Taken};
 pub use firm_check::{FirmError, check_firm};
@@ -100,7 +100,7 @@ impl Vessel {
         self.name.as_deref().unwrap_or(&self.id)
     }
 
-    /// The flag as text.
+    /// Returns the flag as text.
     pub(crate) fn describe_flag(&self) -> String {
         match self.flag {
             Some(flag) => format!("flag {}", flag.letters()),
@@ -108,7 +108,7 @@ impl Vessel {
         }
     }
 
-    /// The facts that rules ask about.
+    /// Returns the facts that rules ask about.
     pub fn ship(&self) -> Ship {
         Ship {
             flag: self.flag,
@@ -168,6 +168,8 @@ pub struct FormerJob {
 
 /// Progress of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = PlannedJobState))]
 #[serde(rename_all = "snake_case")]
 pub enum JobState {
     /// Planned; no firm has been asked.
@@ -199,7 +201,7 @@ pub struct Declined {
 pub struct Checked(Input);
 
 impl Checked {
-    /// The input.
+    /// Returns the input.
     pub fn get(&self) -> &Input {
         &self.0
     }

@@ -54,7 +54,7 @@ pub struct Weights {
 }
 
 impl ByUrgency {
-    /// The weight of an urgency.
+    /// Returns the weight of an urgency.
     pub fn of(&self, urgency: Urgency) -> Eur {
         match urgency {
             Urgency::Routine => self.routine,

@@ -8,6 +8,8 @@ use std::cmp::Ordering;
 
 /// Kind of cause of a due date.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = NeedCauseKind))]
 #[serde(rename_all = "snake_case")]
 pub enum CauseKind {
     /// No adjustment is on record.
@@ -43,7 +45,7 @@ pub struct Cause {
 const NOT_VERIFIED: &str = "adjusted, not yet verified at sea: ";
 
 /// Finds all causes, those of rules in the rules' order.
-pub(super) fn find(
+pub(super) fn find_causes(
     ship: &Ship,
     compass: &Compass,
     rules: &[Rule],
@@ -51,8 +53,8 @@ pub(super) fn find(
     today: NaiveDate,
 ) -> Vec<Cause> {
     let mut causes = Vec::new();
-    causes.extend(failed_verification(compass, terms));
-    causes.extend(change(compass, terms));
+    causes.extend(find_failed_verification(compass, terms));
+    causes.extend(find_change(compass, terms));
     for rule in rules.iter().filter(|rule| binds(&rule.applies, ship)) {
         let found = match &rule.requires {
             Requirement::Transit {
@@ -65,7 +67,7 @@ pub(super) fn find(
                 });
                 transits
                     .filter_map(|transit| {
-                        at_transit(compass, transit.on, *below_deg, |adjusted| {
+                        find_at_transit(compass, transit.on, *below_deg, |adjusted| {
                             table_within_months.after(adjusted) < transit.on
                         })
                     })
@@ -92,10 +94,10 @@ pub(super) fn find(
                     "no adjustment is on record".to_owned(),
                 ),
             }),
-            Requirement::AfterEvent { events } => since_adjusted(compass)
+            Requirement::AfterEvent { events } => events_since_adjustment(compass)
                 .filter(|event| events.contains(&event.kind))
                 .map(|event| {
-                    let due = plus(event.on, terms.after_event_days);
+                    let due = add_days(event.on, terms.after_event_days);
                     (
                         CauseKind::Event,
                         due,
@@ -106,7 +108,7 @@ pub(super) fn find(
             Requirement::Deviation { adjust_above_deg } => {
                 let limit = *adjust_above_deg;
                 let words = format!("where more than {}° must be adjusted", limit.degrees());
-                over(compass, limit, &words, terms, today)
+                find_over_limit(compass, limit, &words, terms, today)
             }
         };
         causes.extend(found.map(|(kind, due, words)| Cause {
@@ -116,13 +118,13 @@ pub(super) fn find(
             rule: Some(rule.id.clone()),
         }));
     }
-    causes.extend(over_own_limit(ship, compass, rules, terms, today));
+    causes.extend(find_over_own_limit(ship, compass, rules, terms, today));
     causes
 }
 
-/// The cause of exceeding the operator's own limit, where no applicable rule
+/// Returns the cause of exceeding the operator's own limit, where no applicable rule
 /// sets as strict a one.
-fn over_own_limit(
+fn find_over_own_limit(
     ship: &Ship,
     compass: &Compass,
     rules: &[Rule],
@@ -141,7 +143,7 @@ fn over_own_limit(
         return None;
     }
     let words = format!("over the vessel's own limit of {}°", own.degrees());
-    let (kind, due, reason) = over(compass, own, &words, terms, today)?;
+    let (kind, due, reason) = find_over_limit(compass, own, &words, terms, today)?;
     Some(Cause {
         kind,
         due,
@@ -150,7 +152,7 @@ fn over_own_limit(
     })
 }
 
-/// True if a rule applies to a ship. An unknown fact is taken to match the
+/// Returns true if a rule applies to a ship. An unknown fact is taken to match the
 /// rule: an early adjustment costs a fee, a late one a detention.
 fn binds(applies: &Applies, ship: &Ship) -> bool {
     let kept = ship.deviation_record.unwrap_or(DeviationRecord::NotKept);
@@ -168,11 +170,12 @@ fn binds(applies: &Applies, ship: &Ship) -> bool {
             .is_none_or(|canal| ship.transits.iter().any(|transit| transit.canal == canal))
 }
 
+/// Cause of a rule: its kind, due date and reason.
 type DatedReason = (CauseKind, NaiveDate, String);
 
-/// Events since the last adjustment. Instants decide where both are known,
+/// Returns the events since the last adjustment. Instants decide where both are known,
 /// otherwise days: an adjustment settles an event of the same day.
-fn since_adjusted(compass: &Compass) -> impl Iterator<Item = &Event> {
+fn events_since_adjustment(compass: &Compass) -> impl Iterator<Item = &Event> {
     let day = compass.adjusted_on.unwrap_or(NaiveDate::MIN);
     let is_since = move |event: &&Event| match (event.at, compass.adjusted_at) {
         (Some(event), Some(adjusted)) => event > adjusted,
@@ -181,9 +184,10 @@ fn since_adjusted(compass: &Compass) -> impl Iterator<Item = &Event> {
     compass.events.iter().filter(is_since)
 }
 
-/// The first day on which the prediction exceeds a limit, or since which the
-/// deviation has, counted from the last adjustment at the earliest.
-fn over(
+/// Returns the cause of exceeding a limit, due from the first day on which the
+/// prediction exceeds it or the deviation has exceeded it since. The last
+/// adjustment is the earliest such day.
+fn find_over_limit(
     compass: &Compass,
     limit: Limit,
     words: &str,
@@ -191,36 +195,40 @@ fn over(
     today: NaiveDate,
 ) -> Option<DatedReason> {
     let limit_deg = limit.degrees();
-    let over = || {
+    let exceeding = || {
         let all = compass.predicted.iter();
         all.filter(|predicted| predicted.worst_deviation_deg > limit_deg)
     };
-    let first = over().min_by_key(|predicted| predicted.on)?;
+    let first = exceeding().min_by_key(|predicted| predicted.on)?;
     let since = first.on.max(compass.adjusted_on.unwrap_or(first.on));
     let first_deg = first.worst_deviation_deg;
     let how_much = match first.on.cmp(&today) {
         Ordering::Greater => {
-            let (on, at) = (first.on, at(first));
-            format!("{} predicted for {on}{at}", worst(first))
+            let (on, at) = (first.on, describe_place(first));
+            format!("{} predicted for {on}{at}", describe_deviation(first))
         }
-        Ordering::Equal => format!("{}{} on {today}", worst(first), at(first)),
-        Ordering::Less => match over().find(|predicted| predicted.on == today) {
+        Ordering::Equal => format!(
+            "{}{} on {today}",
+            describe_deviation(first),
+            describe_place(first)
+        ),
+        Ordering::Less => match exceeding().find(|predicted| predicted.on == today) {
             Some(now) => format!(
                 "{}{}, {first_deg:.1}° or more since {since}",
-                worst(now),
-                at(now)
+                describe_deviation(now),
+                describe_place(now)
             ),
             None => format!("{first_deg:.1}° of deviation or more since {since}"),
         },
     };
     Some((
         CauseKind::OverLimit,
-        plus(since, terms.over_limit_days),
+        add_days(since, terms.over_limit_days),
         format!("{how_much}, {words}"),
     ))
 }
 
-fn worst(predicted: &Predicted) -> String {
+fn describe_deviation(predicted: &Predicted) -> String {
     let side = match predicted.side {
         Some(Side::East) => " E",
         Some(Side::West) => " W",
@@ -229,12 +237,12 @@ fn worst(predicted: &Predicted) -> String {
     format!("{:.1}°{side} of deviation", predicted.worst_deviation_deg)
 }
 
-fn at(predicted: &Predicted) -> String {
+fn describe_place(predicted: &Predicted) -> String {
     let place = predicted.place.as_ref();
     place.map_or_else(String::new, |place| format!(" at {place}"))
 }
 
-fn at_transit(
+fn find_at_transit(
     compass: &Compass,
     on: NaiveDate,
     below: Limit,
@@ -265,18 +273,18 @@ fn at_transit(
     }
     found(format!(
         "{} predicted at the transit of {on}, which requires less than {}°",
-        worst(then),
+        describe_deviation(then),
         below.degrees()
     ))
 }
 
-fn change(compass: &Compass, terms: &Terms) -> Option<Cause> {
+fn find_change(compass: &Compass, terms: &Terms) -> Option<Cause> {
     let change = compass.change?;
     let counts = change.size_deg.abs() * 100.0 >= f64::from(terms.change_centideg);
     let since = compass.adjusted_on.is_none_or(|day| change.on >= day);
     (counts && since).then(|| Cause {
         kind: CauseKind::Change,
-        due: plus(change.on, terms.after_event_days),
+        due: add_days(change.on, terms.after_event_days),
         reason: format!(
             "the ship's magnetism changed on {}, by {:.1}° on the worst heading",
             change.on,
@@ -286,12 +294,12 @@ fn change(compass: &Compass, terms: &Terms) -> Option<Cause> {
     })
 }
 
-fn failed_verification(compass: &Compass, terms: &Terms) -> Option<Cause> {
+fn find_failed_verification(compass: &Compass, terms: &Terms) -> Option<Cause> {
     let failed = compass.failed_verification?;
     let since = compass.adjusted_on.is_none_or(|day| failed.on >= day);
     since.then(|| Cause {
         kind: CauseKind::FailedVerification,
-        due: plus(failed.on, terms.after_event_days),
+        due: add_days(failed.on, terms.after_event_days),
         reason: format!(
             "the verification of {} failed: headings are {:.1}° off the card on the worst heading",
             failed.on,
@@ -301,7 +309,7 @@ fn failed_verification(compass: &Compass, terms: &Terms) -> Option<Cause> {
     })
 }
 
-fn plus(day: NaiveDate, days: u32) -> NaiveDate {
+fn add_days(day: NaiveDate, days: u32) -> NaiveDate {
     day.checked_add_days(Days::new(days.into()))
         .unwrap_or(NaiveDate::MAX)
 }

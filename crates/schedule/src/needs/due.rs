@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// Urgency of a need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Urgency {
     /// Not due soon.
@@ -42,21 +43,21 @@ pub fn due(
     terms: &Terms,
     today: NaiveDate,
 ) -> Option<Due> {
-    let mut causes = causes::find(ship, compass, rules, terms, today);
+    let mut causes = causes::find_causes(ship, compass, rules, terms, today);
     // Among causes of one day, the first named gives the reason.
     causes.sort_by_key(|cause| cause.due);
     let first = causes.first()?;
     Some(Due {
         on: first.due,
-        urgency: urgency(&causes, terms, today),
-        reason: reason(first, &causes),
+        urgency: find_urgency(&causes, terms, today),
+        reason: describe_reason(first, &causes),
         causes,
     })
 }
 
-/// The first cause's reason. A missing adjustment comes before every other
+/// Returns the first cause's reason. A missing adjustment comes before every other
 /// cause, so a deviation over its limit is added to it.
-fn reason(first: &Cause, causes: &[Cause]) -> String {
+fn describe_reason(first: &Cause, causes: &[Cause]) -> String {
     let over = causes
         .iter()
         .find(|cause| cause.kind == CauseKind::OverLimit);
@@ -69,7 +70,7 @@ fn reason(first: &Cause, causes: &[Cause]) -> String {
 }
 
 impl Terms {
-    /// The urgency of a due date, by the date alone.
+    /// Returns the urgency of a due date, by the date alone.
     pub fn urgency(&self, due: NaiveDate, today: NaiveDate) -> Urgency {
         let within = |days: u32| {
             today
@@ -88,9 +89,9 @@ impl Terms {
     }
 }
 
-/// An untrustworthy card makes a need urgent that would be due soon. A compass
-/// without an adjustment on record is due today on every day: it is overdue.
-fn urgency(causes: &[Cause], terms: &Terms, today: NaiveDate) -> Urgency {
+/// Returns the urgency of a need. An untrustworthy card makes it urgent when it would
+/// be due soon. A compass without an adjustment on record is due today on every day: it is overdue.
+fn find_urgency(causes: &[Cause], terms: &Terms, today: NaiveDate) -> Urgency {
     let never = |cause: &Cause| cause.kind == CauseKind::NeverAdjusted;
     let first = match causes.first() {
         Some(first) if !causes.iter().any(never) => first,

@@ -28,11 +28,14 @@ pub struct Ship {
 
 /// A planned transit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = CanalTransit))]
 #[serde(deny_unknown_fields)]
 pub struct Transit {
-    /// The canal.
+    /// The canal: `panama`.
+    #[cfg_attr(feature = "openapi", schema(value_type = String, example = "panama"))]
     pub canal: Canal,
-    /// The day.
+    /// Day of the transit.
     pub on: NaiveDate,
 }
 
@@ -101,6 +104,8 @@ pub struct Predicted {
 
 /// Side to which a compass deviates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = DeviationSide))]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
     /// Compass north lies east of magnetic north.
@@ -110,7 +115,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The side of a deviation in degrees, positive to the east.
+    /// Returns the side of a deviation in degrees, positive to the east.
     pub fn of(deviation_deg: f64) -> Side {
         if deviation_deg < 0.0 {
             Side::West

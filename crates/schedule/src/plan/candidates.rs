@@ -139,7 +139,7 @@ impl<'a> Candidates<'a> {
     }
 }
 
-/// Cost in cents of sending a team to a port.
+/// Returns the cost in cents of sending a team to a port.
 pub(super) fn travel(firm: &Firm, port: PortCode) -> i64 {
     firm.travel(port).map_or(0, Eur::cents)
 }

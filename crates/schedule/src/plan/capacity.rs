@@ -30,7 +30,7 @@ impl<'a> Capacity<'a> {
         capacity
     }
 
-    /// Number of further teams that a firm would need for one more job in a
+    /// Returns the number of further teams that a firm would need for one more job in a
     /// port.
     pub(super) fn missing_teams(&self, firm: &Firm, port: PortCode, day: NaiveDate) -> u32 {
         let none = BTreeMap::new();
@@ -51,7 +51,7 @@ impl<'a> Capacity<'a> {
         needed.saturating_sub(firm.teams)
     }
 
-    /// Names of the ships that a firm serves on a day.
+    /// Returns the names of the ships that a firm serves on a day.
     pub(super) fn ships_served(&self, firm: &Firm, day: NaiveDate) -> Vec<&'a str> {
         let ports = self.days.get(&(firm.id.as_str(), day));
         ports

@@ -40,7 +40,7 @@ impl Job<'_> {
             .unwrap_or(Urgency::Routine)
     }
 
-    /// True if the job is late already, however soon it is done.
+    /// Returns true if the job is late already, however soon it is done.
     pub(super) fn is_overdue(&self, today: NaiveDate) -> bool {
         self.due() < today || self.urgency() == Urgency::Overdue
     }
@@ -49,7 +49,7 @@ impl Job<'_> {
         self.needs.iter().map(|need| need.id.clone()).collect()
     }
 
-    /// True if the previous plan has the job at this call, by this firm, on
+    /// Returns true if the previous plan has the job at this call, by this firm, on
     /// this day.
     pub(super) fn was_planned(&self, call: &str, firm: &str, day: NaiveDate) -> bool {
         self.former

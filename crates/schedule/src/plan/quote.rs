@@ -47,7 +47,7 @@ pub(super) struct Quote {
 }
 
 impl Quote {
-    /// All costs but the travel, which jobs may share.
+    /// Returns all costs but the travel, which jobs may share.
     pub(super) fn cost(&self) -> i64 {
         self.fee + self.risk + self.waiting + self.late + self.early + self.changed
     }
@@ -154,7 +154,7 @@ pub(super) fn quote(
     })
 }
 
-/// The most that waiting can cost a job, without a fee: to the end of the
+/// Returns the maximum cost of waiting for a job, without a fee: to the end of the
 /// horizon, then late, and with a missed ship. An undone job costs this much
 /// whatever the obstacles, so that no new obstacle makes a plan cheaper.
 pub(super) fn max_waiting_cost(input: &Input, job: &Job<'_>) -> i64 {
@@ -178,7 +178,7 @@ pub(super) fn max_waiting_cost(input: &Input, job: &Job<'_>) -> i64 {
     waits + weights.missed_eur.of(urgency).cents() + changed
 }
 
-/// Cost of departing from the previous plan.
+/// Returns the cost of departing from the previous plan.
 fn change_cost(input: &Input, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate) -> i64 {
     match job.former {
         Some(former) if !job.was_planned(&call.id, &firm.id, day) => {

@@ -106,7 +106,7 @@ impl<'a> Remedies<'a> {
         format!("an extension to {day}, from {whose}, where its rules allow one")
     }
 
-    /// True if the due date allows a job on that day.
+    /// Returns true if the due date allows a job on that day.
     fn may_be_on(&self, day: NaiveDate) -> bool {
         let late_days = (day - self.job.due()).num_days();
         let in_cap = |most: u32| late_days <= i64::from(most);
@@ -148,7 +148,7 @@ impl<'a> Remedies<'a> {
         self.add(kind, about, remedy);
     }
 
-    /// `None` where nothing helps: the hours of that day are over.
+    /// Returns the remedy; `None` where nothing helps: the hours of that day are over.
     fn remedy_of_firm(
         &self,
         firm: &Firm,
@@ -246,7 +246,7 @@ impl<'a> Remedies<'a> {
         self.add(2, day, remedy);
     }
 
-    /// The first day on which a firm could come to a port, if the ship called
+    /// Returns the first day on which a firm could come to a port, if the ship called
     /// there and the firm's terms allowed it.
     fn first_day(&self, firm: &Firm, port: PortCode) -> Option<NaiveDate> {
         let zone = ports::zone(port);
@@ -302,7 +302,7 @@ impl<'a> Remedies<'a> {
         self.add(1, self.job.due(), remedy);
     }
 
-    /// A call at a place, where a firm could come on `first` at the earliest. A
+    /// Returns a call at a place, where a firm could come on `first` at the earliest. A
     /// date in the past, or before `first`, is not offered.
     fn call_at(&self, first: NaiveDate, place: &str) -> String {
         let (today, due) = (self.input.now.utc_date(), self.job.due());

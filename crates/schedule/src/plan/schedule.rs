@@ -76,16 +76,18 @@ pub struct PlannedJob {
 
 /// Weighted costs of a job beyond what is paid, in euros.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = PlannedJobWeighed))]
 pub struct Weighed {
-    /// Risk of missing the ship.
+    /// Risk of missing the ship, euros.
     pub risk_eur: f64,
-    /// Days of waiting.
+    /// Days of waiting, euros.
     pub waiting_eur: f64,
-    /// Days to come after the due date, and lateness itself.
+    /// Days to come after the due date, and lateness itself, euros.
     pub late_eur: f64,
-    /// Days before the due date.
+    /// Days before the due date, euros.
     pub early_eur: f64,
-    /// Departure from the previous plan.
+    /// Departure from the previous plan, euros.
     pub changed_eur: f64,
 }
 
@@ -127,6 +129,8 @@ pub struct Change {
 
 /// Kind of change of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = PlanChangeKind))]
 #[serde(rename_all = "snake_case")]
 pub enum ChangeKind {
     /// It stays unchanged.

@@ -187,7 +187,7 @@ impl Explanation<'_> {
     }
 }
 
-/// An obstacle as text.
+/// Returns an obstacle as text.
 fn describe_obstacle(
     job: &Job<'_>,
     call: &PortCall,

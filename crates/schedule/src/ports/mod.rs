@@ -45,7 +45,7 @@ pub struct Port {
 
 static PORTS: OnceLock<Vec<Port>> = OnceLock::new();
 
-/// All ports, in the order of their codes.
+/// Returns all ports, in the order of their codes.
 #[allow(clippy::missing_panics_doc, reason = "a test reads the same table")]
 pub fn all() -> &'static [Port] {
     PORTS.get_or_init(|| {
@@ -71,7 +71,7 @@ pub fn zone(code: PortCode) -> Zone {
 
 /// Explains why a code is not a port of the table, and suggests the port that
 /// may be meant: cities and airports have codes of their own.
-pub fn unknown(code: PortCode) -> String {
+pub fn describe_unknown(code: PortCode) -> String {
     let wrong = format!("{code} is not a sea port in the UN/LOCODE table");
     let places = include_str!("../../data/places.csv").lines().skip(1);
     let mut places = places.filter_map(|line| line.split_once(','));
@@ -85,8 +85,8 @@ pub fn unknown(code: PortCode) -> String {
 }
 
 /// Finds ports whose code or name begins with a text, then those whose name
-/// contains it elsewhere; at most `most`.
-pub fn search(text: &str, most: usize) -> Vec<&'static Port> {
+/// contains it elsewhere; at most `limit`.
+pub fn search(text: &str, limit: usize) -> Vec<&'static Port> {
     let text = text.trim().to_lowercase();
     if text.is_empty() {
         return Vec::new();
@@ -102,7 +102,7 @@ pub fn search(text: &str, most: usize) -> Vec<&'static Port> {
         }
     }
     first.append(&mut later);
-    first.truncate(most);
+    first.truncate(limit);
     first
 }
 
@@ -151,7 +151,7 @@ impl From<PortCode> for String {
     }
 }
 
-/// A line of the table: code, name, the name without accents where it has some, degrees
+/// Parses a line of the table: code, name, the name without accents where it has some, degrees
 /// north, degrees east, time zone. Only names are quoted, and they have no quotes in them.
 fn read(line: &'static str) -> Option<Port> {
     let (code, rest) = line.split_once(',')?;
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn a_city_or_an_airport_is_refused_with_the_port_of_its_name() {
-        let said = |code: &str| unknown(PortCode::parse(code).unwrap());
+        let said = |code: &str| describe_unknown(PortCode::parse(code).unwrap());
         assert_eq!(
             said("CNSHA"),
             "CNSHA is not a sea port in the UN/LOCODE table; the sea port Shanghai is CNSGH"

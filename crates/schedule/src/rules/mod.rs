@@ -109,6 +109,7 @@ pub struct Flag([u8; 2]);
 
 /// A ship's trade.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs, reason = "the words say it")]
 pub enum Trade {
@@ -125,6 +126,8 @@ pub enum Trade {
 
 /// State of the compass deviation book.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = DeviationRecordKept))]
 #[serde(rename_all = "snake_case")]
 pub enum DeviationRecord {
     /// Kept as required.
@@ -180,7 +183,7 @@ pub enum RuleError {
 }
 
 impl Flag {
-    /// The two letters.
+    /// Returns the two letters.
     #[allow(clippy::missing_panics_doc, reason = "it cannot: see the message")]
     pub fn letters(&self) -> &str {
         std::str::from_utf8(&self.0).expect("capital letters are ASCII")
@@ -204,7 +207,7 @@ impl From<Flag> for String {
 }
 
 impl Months {
-    /// Number of months.
+    /// Returns the number of months.
     pub fn get(self) -> u32 {
         self.0
     }

@@ -117,7 +117,7 @@ impl<'a> Chains<'a> {
         false
     }
 
-    /// Value of the place that a need occupies.
+    /// Returns the value of the place that a need occupies.
     pub(super) fn worth_of_place(&self, state: &State<'_>, need: usize) -> i64 {
         state.chosen[need].map_or(0, |choice| self.worth[state.problem.choices[choice].visit])
     }
@@ -147,7 +147,7 @@ impl<'a> Chains<'a> {
         apply(state, need, &moves, limit)
     }
 
-    /// Largest value, beyond its cost, of a free place that some need could
+    /// Returns the largest value, beyond its cost, of a free place that some need could
     /// take.
     fn best_free_place(&mut self, state: &State<'_>) -> i64 {
         self.work.spend(self.worth.len() / 2);
@@ -250,7 +250,7 @@ impl<'a> Chains<'a> {
         }
     }
 
-    /// True if a chain has used a visit's day before; it counts on that day's
+    /// Returns true if a chain has used a visit's day before; it counts on that day's
     /// teams only once.
     fn has_used_day(&mut self, state: &State<'_>, from: Option<usize>, visit: usize) -> bool {
         let day = state.problem.visits[visit].firm_day;

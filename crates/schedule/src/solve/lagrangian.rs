@@ -122,7 +122,7 @@ impl<'a> Prices<'a> {
         }
     }
 
-    /// The next prices; `None` where the mean meets each need once or the gap
+    /// Returns the next prices; `None` where the mean meets each need once or the gap
     /// is closed.
     fn trial(&self, known: f64) -> Option<Vec<f64>> {
         let slopes: Vec<f64> = (0..self.at.len()).map(|need| self.slope(need)).collect();
@@ -140,7 +140,7 @@ impl<'a> Prices<'a> {
         )
     }
 
-    /// Slope of a need's price by the mean: positive for a need that is met too
+    /// Returns the slope of a need's price by the mean: positive for a need that is met too
     /// seldom.
     fn slope(&self, need: usize) -> f64 {
         let slope = 1.0 - self.met[need];
@@ -153,7 +153,7 @@ impl<'a> Prices<'a> {
         if ended { 0.0 } else { slope }
     }
 
-    /// True if the newest slope agrees with the mean's.
+    /// Returns true if the newest slope agrees with the mean's.
     fn slopes_agree(&self, met: &[f64]) -> bool {
         let each = met.iter().enumerate();
         each.map(|(need, met)| (1.0 - met) * self.slope(need))
@@ -203,7 +203,7 @@ impl<'a> Prices<'a> {
         choices
     }
 
-    /// The bound at these prices, in whole cents.
+    /// Returns the bound at these prices, in whole cents.
     pub(super) fn bound(&self) -> Bound {
         let prices = self.at.iter().zip(&self.problem.unmet);
         let whole: Vec<i64> = prices
@@ -213,7 +213,7 @@ impl<'a> Prices<'a> {
     }
 }
 
-/// Number of times that each need is met.
+/// Returns the number of times that each need is met.
 fn met(problem: &Problem, solution: &Solution) -> Vec<f64> {
     let mut met = vec![0.0; problem.unmet.len()];
     for choice in &solution.choices {

@@ -18,24 +18,24 @@ pub(super) fn improve(
     known: Assignment,
     work: &mut WorkLimit,
 ) -> Assignment {
-    let wanted = wanted(problem, &open.choices);
-    let mut wanted_by: Vec<Vec<usize>> = vec![Vec::new(); problem.teams.len()];
-    for (need, days) in wanted.iter().enumerate() {
+    let open_days = find_open_days(problem, &open.choices);
+    let mut needs_by_day: Vec<Vec<usize>> = vec![Vec::new(); problem.teams.len()];
+    for (need, days) in open_days.iter().enumerate() {
         for day in days {
-            wanted_by[*day].push(need);
+            needs_by_day[*day].push(need);
         }
     }
     let mut found = known;
     let mut done = vec![false; problem.unmet.len()];
     for seed in 0..problem.unmet.len() {
         // A need within an earlier neighbourhood is not the centre of another.
-        if done[seed] || wanted[seed].len() < 2 {
+        if done[seed] || open_days[seed].len() < 2 {
             continue;
         }
         if work.is_spent() {
             break;
         }
-        let near = neighbourhood_of(seed, &wanted, &wanted_by);
+        let near = find_neighbourhood(seed, &open_days, &needs_by_day);
         let mut free = vec![false; problem.unmet.len()];
         for (at, need) in near.into_iter().enumerate() {
             free[need] = true;
@@ -62,26 +62,30 @@ pub(super) fn improve(
     found
 }
 
-/// The firms' days on which each need has an open choice.
-fn wanted(problem: &Problem, open: &[bool]) -> Vec<Vec<usize>> {
-    let mut wanted: Vec<Vec<usize>> = vec![Vec::new(); problem.unmet.len()];
+/// Returns the firms' days on which each need has an open choice.
+fn find_open_days(problem: &Problem, open: &[bool]) -> Vec<Vec<usize>> {
+    let mut open_days: Vec<Vec<usize>> = vec![Vec::new(); problem.unmet.len()];
     for (choice, open) in problem.choices.iter().zip(open) {
         let day = problem.visits[choice.visit].firm_day;
-        if *open && !wanted[choice.need].contains(&day) {
-            wanted[choice.need].push(day);
+        if *open && !open_days[choice.need].contains(&day) {
+            open_days[choice.need].push(day);
         }
     }
-    wanted
+    open_days
 }
 
-/// The needs nearest to one, itself first: those that want the same firms'
-/// days, then those that want the same days as these.
-fn neighbourhood_of(seed: usize, wanted: &[Vec<usize>], wanted_by: &[Vec<usize>]) -> Vec<usize> {
+/// Returns the needs nearest to one, itself first: those open to the same firms'
+/// days, then those open to the same days as these.
+fn find_neighbourhood(
+    seed: usize,
+    open_days: &[Vec<usize>],
+    needs_by_day: &[Vec<usize>],
+) -> Vec<usize> {
     let mut near = vec![seed];
     let mut at = 0;
     while at < near.len() && near.len() < NEIGHBOURHOOD_SIZE {
-        for day in &wanted[near[at]] {
-            for need in &wanted_by[*day] {
+        for day in &open_days[near[at]] {
+            for need in &needs_by_day[*day] {
                 if near.len() < NEIGHBOURHOOD_SIZE && !near.contains(need) {
                     near.push(*need);
                 }

@@ -21,7 +21,7 @@ pub(super) struct Open {
 }
 
 impl Open {
-    /// True if the gap is too small for a round over the neighbourhoods. A
+    /// Returns true if the gap is too small for a round over the neighbourhoods. A
     /// small problem always gets one round, which may prove it optimal.
     pub(super) fn is_enough(&self, round: usize, gap: i64, cost: i64) -> bool {
         let many = self.choices.iter().filter(|open| **open).count() > MANY_OPEN;

@@ -52,7 +52,7 @@ impl Problem {
         self.cost_of(assignment.iter().copied().enumerate())
     }
 
-    /// Cost of some needs with these choices, as if there were no others.
+    /// Returns the cost of some needs with these choices, as if there were no others.
     pub(super) fn cost_of(
         &self,
         choices: impl Iterator<Item = (usize, Option<usize>)>,

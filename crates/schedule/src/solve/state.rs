@@ -17,7 +17,7 @@ pub(super) struct State<'a> {
     moves: Vec<(usize, Option<usize>)>,
 }
 
-/// Greedy improvement: each need in turn takes its cheapest choice, until none
+/// Improves greedily: each need in turn takes its cheapest choice, until none
 /// can improve.
 pub(super) fn greedy(
     problem: &Problem,
@@ -71,13 +71,13 @@ impl<'a> State<'a> {
         state
     }
 
-    /// Cost of adding a choice, travel included; `None` when no team is left.
+    /// Returns the cost of adding a choice, travel included; `None` when no team is left.
     pub(super) fn price_of(&self, choice: usize) -> Option<i64> {
         let choice = self.problem.choices[choice];
         Some(choice.cost + self.price_of_place(choice.visit)?)
     }
 
-    /// Cost of one more place on a visit; `None` when no team is left.
+    /// Returns the cost of one more place on a visit; `None` when no team is left.
     pub(super) fn price_of_place(&self, at: usize) -> Option<i64> {
         let visit = self.problem.visits[at];
         if !self.jobs[at].is_multiple_of(visit.jobs_a_team) {
@@ -87,7 +87,7 @@ impl<'a> State<'a> {
         free.then_some(visit.travel)
     }
 
-    /// True if a visit has a team with one job there.
+    /// Returns true if a visit has a team with one job there.
     pub(super) fn has_single(&self, visit: usize) -> bool {
         let others = self.jobs[visit].checked_sub(1);
         others.is_some_and(|others| others.is_multiple_of(self.problem.visits[visit].jobs_a_team))
@@ -127,7 +127,7 @@ impl<'a> State<'a> {
         choice.cost
     }
 
-    /// The mark for [`State::undo_to`].
+    /// Returns the mark for [`State::undo_to`].
     pub(super) fn mark(&self) -> usize {
         self.moves.len()
     }
@@ -148,7 +148,7 @@ impl<'a> State<'a> {
         self.moves.clear();
     }
 
-    /// The cheapest way to meet a need now, with its cost; `None` where leaving
+    /// Returns the cheapest way to meet a need now, with its cost; `None` where leaving
     /// it unmet is cheapest.
     fn best(&self, need: usize, order: &[Vec<usize>]) -> (Option<usize>, i64) {
         let mut best = (None, self.problem.unmet[need]);

@@ -12,7 +12,7 @@ use super::state::State;
 use super::work_limit::WorkLimit;
 use std::collections::BTreeSet;
 
-/// The most rounds over all needs and all visits.
+/// Maximum number of rounds over all needs and all visits.
 const ROUNDS: usize = 12;
 
 /// Improves an assignment by chains and by teams until neither makes it
@@ -86,18 +86,18 @@ impl Teams<'_> {
     fn send_one_more(&mut self, visit: usize) -> bool {
         let problem = self.state.problem;
         let day = problem.visits[visit].firm_day;
-        let wanted = self.wanted(visit);
+        let choices = self.find_best_choices(visit);
         if self.state.sent[day] < problem.teams[day] {
-            return self.send(visit, &wanted, &[]);
+            return self.send(visit, &choices, &[]);
         }
         let others = self.state.visits_of[day].clone();
         others.into_iter().any(|other| {
             let redirected = self.last_load(other);
-            other != visit && !redirected.is_empty() && self.send(visit, &wanted, &redirected)
+            other != visit && !redirected.is_empty() && self.send(visit, &choices, &redirected)
         })
     }
 
-    /// The jobs of the team that is least missed on a visit.
+    /// Returns the jobs of the team that is least missed on a visit.
     fn last_load(&self, visit: usize) -> Vec<usize> {
         let jobs = self.state.jobs[visit];
         if jobs == 0 {
@@ -118,15 +118,15 @@ impl Teams<'_> {
 
     /// Sends a team to a visit and places its former jobs again, if that is
     /// cheaper in total.
-    fn send(&mut self, visit: usize, wanted: &[usize], redirected: &[usize]) -> bool {
+    fn send(&mut self, visit: usize, choices: &[usize], redirected: &[usize]) -> bool {
         let problem = self.state.problem;
         let mark = self.state.mark();
-        self.chains.work.spend(wanted.len() + redirected.len());
+        self.chains.work.spend(choices.len() + redirected.len());
         let (mut cost, mut capacity) = (0, 0);
         for &need in redirected {
             cost -= self.state.take(need);
         }
-        for &choice in wanted {
+        for &choice in choices {
             let need = problem.choices[choice].need;
             if !redirected.contains(&need) {
                 capacity = capacity.max(self.chains.worth_of_place(&self.state, need));
@@ -134,19 +134,19 @@ impl Teams<'_> {
             }
             cost += self.state.put(need, choice);
         }
-        let mut waiting = redirected.to_vec();
-        waiting.retain(|need| self.state.chosen[*need].is_none());
+        let mut displaced = redirected.to_vec();
+        displaced.retain(|need| self.state.chosen[*need].is_none());
         let day = problem.visits[visit].firm_day;
         let fits = self.state.sent[day] <= problem.teams[day];
-        if fits && self.place_again(&waiting, cost, capacity) {
+        if fits && self.place_displaced(&displaced, cost, capacity) {
             return true;
         }
         self.state.undo_to(mark);
         false
     }
 
-    /// The choices that gain most on a visit, up to the capacity of a team.
-    fn wanted(&mut self, visit: usize) -> Vec<usize> {
+    /// Returns the choices that gain most on a visit, up to the capacity of a team.
+    fn find_best_choices(&mut self, visit: usize) -> Vec<usize> {
         let problem = self.state.problem;
         let mut gains: Vec<(i64, usize)> = Vec::new();
         self.chains.work.spend(self.of_visit[visit].len());
@@ -162,8 +162,8 @@ impl Teams<'_> {
         let most = problem.visits[visit].jobs_a_team as usize;
         // Of two choices of one need on a visit, the cheaper.
         let mut needs = BTreeSet::new();
-        let wanted = gains.into_iter().map(|(_, choice)| choice);
-        wanted
+        let choices = gains.into_iter().map(|(_, choice)| choice);
+        choices
             .filter(|choice| needs.insert(problem.choices[*choice].need))
             .take(most)
             .collect()
@@ -171,10 +171,10 @@ impl Teams<'_> {
 
     /// Places needs one after the other; true if `cost` plus their costs is
     /// negative.
-    fn place_again(&mut self, waiting: &[usize], mut cost: i64, capacity: i64) -> bool {
-        let mut left: i64 = waiting.iter().map(|need| self.alone(*need)).sum();
-        for &need in waiting {
-            left -= self.alone(need);
+    fn place_displaced(&mut self, displaced: &[usize], mut cost: i64, capacity: i64) -> bool {
+        let mut left: i64 = displaced.iter().map(|need| self.min_cost(*need)).sum();
+        for &need in displaced {
+            left -= self.min_cost(need);
             let limit = -cost - left;
             match self.chains.place(&mut self.state, need, limit, capacity) {
                 Some(placed) => cost += placed,
@@ -184,8 +184,8 @@ impl Teams<'_> {
         cost < 0
     }
 
-    /// Cost of a need with the first choice of all teams.
-    fn alone(&self, need: usize) -> i64 {
+    /// Returns the cost of a need with the first choice of all teams.
+    fn min_cost(&self, need: usize) -> i64 {
         let problem = self.state.problem;
         let cheapest = self.order[need].first();
         let cheapest = cheapest.map_or(i64::MAX, |choice| problem.choices[*choice].cost);

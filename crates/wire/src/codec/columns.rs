@@ -10,6 +10,7 @@ use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
 use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
+use std::ops::RangeInclusive;
 
 /// Column ids, in the order of the frame.
 pub(super) const TIME: u64 = 1;
@@ -42,11 +43,11 @@ const SPREAD_STEP: Step = Step::new(2, 2);
 const WINDOWS_STEP: Step = Step::new(1, 0);
 
 /// Seconds since 1970 at 1980-01-06, when GPS time begins, and at 2100-01-01.
-const TIME_RANGE_S: (f64, f64) = (315_964_800.0, 4_102_444_800.0);
-const SOG_RANGE_KN: (f64, f64) = (0.0, 200.0);
-const RATE_OF_TURN_RANGE: (f64, f64) = (-3600.0, 3600.0);
-const SPREAD_RANGE_DEG: (f64, f64) = (0.0, 180.0);
-const WINDOWS_RANGE: (f64, f64) = (1.0, 65_535.0);
+const TIME_RANGE_S: RangeInclusive<f64> = 315_964_800.0..=4_102_444_800.0;
+const SOG_RANGE_KN: RangeInclusive<f64> = 0.0..=200.0;
+const RATE_OF_TURN_RANGE: RangeInclusive<f64> = -3600.0..=3600.0;
+const SPREAD_RANGE_DEG: RangeInclusive<f64> = 0.0..=180.0;
+const WINDOWS_RANGE: RangeInclusive<f64> = 1.0..=65_535.0;
 
 /// One quantity of all samples.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,9 +77,10 @@ pub fn check(sample: &Sample, row: usize) -> Result<(), EncodeError> {
         ("spread_deg", sample.spread_deg, SPREAD_RANGE_DEG),
         ("windows", Some(f64::from(sample.windows)), WINDOWS_RANGE),
     ];
-    for (field, value, (low, high)) in fields {
+    for (field, value, range) in fields {
         let Some(value) = value else { continue };
-        if !(low..=high).contains(&value) {
+        if !range.contains(&value) {
+            let (low, high) = range.into_inner();
             return Err(EncodeError::OutOfRange {
                 row,
                 field,
@@ -227,15 +229,24 @@ impl Row<'_> {
         }
     }
 
-    fn within(&self, id: u64, value: Decimal, range: (f64, f64)) -> Result<f64, DecodeError> {
+    fn within(
+        &self,
+        id: u64,
+        value: Decimal,
+        range: &RangeInclusive<f64>,
+    ) -> Result<f64, DecodeError> {
         let value = value.value();
-        if !(range.0..=range.1).contains(&value) {
+        if !range.contains(&value) {
             return Err(self.out_of_range(id));
         }
         Ok(value)
     }
 
-    fn optional_within(&self, id: u64, range: (f64, f64)) -> Result<Option<f64>, DecodeError> {
+    fn optional_within(
+        &self,
+        id: u64,
+        range: &RangeInclusive<f64>,
+    ) -> Result<Option<f64>, DecodeError> {
         self.optional(id)
             .map(|v| self.within(id, v, range))
             .transpose()
@@ -244,7 +255,7 @@ impl Row<'_> {
 
 fn to_sample(row: &Row<'_>) -> Result<Sample, DecodeError> {
     let time = row.required(TIME)?;
-    row.within(TIME, time, TIME_RANGE_S)?;
+    row.within(TIME, time, &TIME_RANGE_S)?;
     let lon = row.required(LON)?.wrapped_180().value();
     let position =
         Position::new(row.required(LAT)?.value(), lon).map_err(|_| row.out_of_range(LAT))?;
@@ -253,7 +264,7 @@ fn to_sample(row: &Row<'_>) -> Result<Sample, DecodeError> {
     let satellite = row.optional(SATELLITE).map(|s| s.plus(base).wrapped_360());
     let reference = gyro.or(satellite).unwrap_or(Decimal::ZERO);
     let compass = row.required(COMPASS)?.plus(reference).wrapped_360();
-    let windows = row.within(WINDOWS, row.required(WINDOWS)?, WINDOWS_RANGE)?;
+    let windows = row.within(WINDOWS, row.required(WINDOWS)?, &WINDOWS_RANGE)?;
     Ok(Sample {
         time: i64::try_from(time.micros())
             .ok()
@@ -263,9 +274,9 @@ fn to_sample(row: &Row<'_>) -> Result<Sample, DecodeError> {
         compass: CompassHeading::new(compass.value()).ok_or(row.out_of_range(COMPASS))?,
         gyro: gyro.and_then(|g| TrueHeading::new(g.value())),
         satellite: satellite.and_then(|s| TrueHeading::new(s.value())),
-        sog_kn: row.optional_within(SOG, SOG_RANGE_KN)?,
-        rate_of_turn_deg_min: row.optional_within(RATE_OF_TURN, RATE_OF_TURN_RANGE)?,
-        spread_deg: row.optional_within(SPREAD, SPREAD_RANGE_DEG)?,
+        sog_kn: row.optional_within(SOG, &SOG_RANGE_KN)?,
+        rate_of_turn_deg_min: row.optional_within(RATE_OF_TURN, &RATE_OF_TURN_RANGE)?,
+        spread_deg: row.optional_within(SPREAD, &SPREAD_RANGE_DEG)?,
         windows: windows as u16,
     })
 }

@@ -15,6 +15,7 @@ use binnacle_platform::time::Time;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use utoipa::ToSchema;
 
 /// Period of a stored row of samples, microseconds: 30 days.
 const CHUNK_MICROS: i64 = 30 * 86_400 * 1_000_000;
@@ -35,18 +36,23 @@ pub struct AnalysisResult {
     pub findings: Findings,
 }
 
-/// Coverage of a compass's samples, advice where more would help most, and the comparison of gyro
-/// and satellite compass.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// Coverage of a compass's samples, with advice and a comparison of the references.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[schema(as = Coverage)]
 pub struct Covered {
     /// Counts of samples.
     #[serde(flatten)]
+    #[schema(inline)]
     pub coverage: Coverage,
-    /// None without a model, and in old rows from before there was advice.
+    /// Advice on the headings and waters that narrow the 95 % band most; none without a model.
     #[serde(default)]
+    #[schema(required)]
     pub sail_next: Option<SailNext>,
-    /// None where they could not be compared, and in old rows.
+    /// Comparison of gyro and satellite compass over the samples since the last change of the ship
+    /// or the compass. None before the first analysis, and where a model is refused because they
+    /// disagree.
     #[serde(default)]
+    #[schema(required)]
     pub references: Option<ReferenceCheck>,
 }
 

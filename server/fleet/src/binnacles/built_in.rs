@@ -1,9 +1,8 @@
 //! Designs of binnacles that are built into the product.
 
-use super::schema::DesignSchema;
 use anyhow::Context;
 use axum::extract::FromRef;
-use binnacle_adjustment::binnacle::{Design, SHIPPED};
+use binnacle_adjustment::binnacle::{Design, DesignForm, SHIPPED};
 use binnacle_platform::access::Caller;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
@@ -72,7 +71,7 @@ async fn list_types(_: Caller) -> Result<Json<BinnacleTypeList>> {
 /// As it goes into a binnacle's `type`.
 #[utoipa::path(get, path = "/binnacle-types/{name}", tag = "adjusting",
     params(("name" = String, Path, example = "class_a_trays")),
-    responses((status = 200, body = DesignSchema), (status = 401, body = Problem),
+    responses((status = 200, body = DesignForm), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn find_type(_: Caller, Id(name): Id<String>) -> Result<Json<Design>> {
     let found = SHIPPED.into_iter().find(|(known, _)| *known == name);

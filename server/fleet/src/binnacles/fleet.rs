@@ -1,6 +1,5 @@
 //! List of the binnacles of a fleet, one line for each compass, also without a binnacle.
 
-use super::schema::AboardSchema;
 use super::store;
 use crate::compasses::Role;
 use axum::extract::{FromRef, State};
@@ -52,7 +51,6 @@ struct BinnacleInShort {
     /// The maker's number of this one.
     serial: String,
     /// All correctors on board, those in use included.
-    #[schema(value_type = AboardSchema)]
     #[serde(rename = "aboard")]
     inventory: Inventory,
     /// Number of measured effects.

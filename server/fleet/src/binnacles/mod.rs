@@ -8,13 +8,10 @@
 //!   too.
 
 mod built_in;
-mod design_schema;
 mod fleet;
-mod schema;
 mod setting_text;
 mod store;
 
-pub use schema::{BarSchema, BinnacleSchema, BucketSchema, PairSchema, SettingSchema, TraySchema};
 pub use setting_text::describe_setting;
 pub use store::{Author, StoredRevision, current, insert};
 
@@ -75,7 +72,7 @@ pub struct BinnacleRevision {
     #[schema(required)]
     pub reason: Option<String>,
     /// The binnacle, with the correctors on board and their setting.
-    #[schema(value_type = BinnacleSchema)]
+    #[schema(value_type = BinnacleForm)]
     pub binnacle: Binnacle,
 }
 
@@ -121,7 +118,7 @@ async fn find_binnacle(
 /// written before stays among its revisions; the same again makes no new one.
 #[utoipa::path(put, path = "/vessels/{id}/compasses/{compass}/binnacle", tag = "adjusting",
     params(("id" = VesselId, Path), ("compass" = CompassId, Path), RevisionReason, Key),
-    request_body = BinnacleSchema,
+    request_body = BinnacleForm,
     responses((status = 200, body = BinnacleRevision), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem)))]
@@ -193,7 +190,7 @@ async fn list_revisions(
 /// As `binnacle-server plan --binnacle` reads it, and as it can be written again.
 #[utoipa::path(get, path = "/vessels/{id}/compasses/{compass}/binnacle.json", tag = "adjusting",
     params(("id" = VesselId, Path), ("compass" = CompassId, Path)),
-    responses((status = 200, body = BinnacleSchema), (status = 401, body = Problem),
+    responses((status = 200, body = BinnacleForm), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn export_binnacle(
     State(app): State<App>,

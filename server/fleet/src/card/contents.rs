@@ -3,10 +3,8 @@
 //! Invariant: a card is predicted until headings at sea have verified the adjustment that its model
 //! comes from. It is never a certificate.
 
-use crate::binnacles::SettingSchema;
 use crate::compasses::Compass;
-use crate::deviation::{DeviationRow, HandbookSchema, WorstHeading};
-use crate::models::CardWithdrawnSchema;
+use crate::deviation::{DeviationRow, WorstHeading};
 use binnacle_adjustment::binnacle::{Setting, Shape};
 use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_platform::ids::{ModelId, OrderId, VesselId};
@@ -73,7 +71,7 @@ pub struct Card {
     /// The coefficients there.
     pub coefficients: CardCoefficients,
     /// Change that withdrew cards from before the model's epoch; none where there was no change.
-    #[schema(required, value_type = Option<CardWithdrawnSchema>)]
+    #[schema(required)]
     pub replaces: Option<CardWithdrawn>,
     /// The binnacle's correctors as they were last recorded; none where nobody recorded
     /// them.
@@ -224,14 +222,12 @@ pub struct CardRow {
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct CardCoefficients {
     /// The exact ones, × 57.3.
-    #[schema(value_type = HandbookSchema)]
     pub exact: CoefficientsInDegrees,
     /// Constant that the model adds on every heading: alignment, reference and variation offsets.
     /// The handbook's A includes it.
     #[schema(example = 0.2)]
     pub constant_deg: f64,
     /// Approximate coefficients, as an adjuster finds them who swings the ship.
-    #[schema(value_type = HandbookSchema)]
     pub handbook: CoefficientsInDegrees,
 }
 
@@ -247,7 +243,6 @@ pub struct CardCorrectors {
     #[schema(example = "Cassens & Plath type 11, no. 2047")]
     pub binnacle: String,
     /// Setting of each corrector.
-    #[schema(value_type = SettingSchema)]
     pub setting: Setting,
     /// Shape of the quadrantal correctors.
     #[serde(skip)]

@@ -5,7 +5,6 @@
 //! sample, so that they can be compared.
 
 mod api;
-mod schema;
 mod store;
 mod timeline;
 

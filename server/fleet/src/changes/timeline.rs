@@ -3,12 +3,9 @@
 //! Invariants: every index is of an epoch in the same timeline. An epoch has a model, or the
 //! reason for which it has none.
 
-use super::schema::{CauseProbabilitySchema, CauseSchema, StepSchema};
 use super::store::{Analysed, StoredEpoch, Version};
 use crate::analysis::ChangeFinding;
 use crate::deviation::{self, DeviationRow};
-use crate::logbook::LogbookKindSchema;
-use crate::models::RefusalSchema;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::result::{Cause, CauseProbability, FitError, LastPlace, Step};
 use binnacle_compass::ship::EarthField;
@@ -75,11 +72,11 @@ pub(super) struct Epoch {
     #[schema(required)]
     to: Option<Time>,
     /// Kind of the logbook entry that began it; none where none did.
-    #[schema(required, value_type = Option<LogbookKindSchema>)]
+    #[schema(required)]
     begun_by: Option<LogbookKind>,
     /// Likeliest cause of the change that began it, or that was over by then; none where the
     /// samples show no change.
-    #[schema(required, value_type = Option<CauseSchema>)]
+    #[schema(required)]
     begun_by_change: Option<Cause>,
     /// Index in this list of the earlier epoch whose magnetism it has again.
     #[schema(required)]
@@ -105,7 +102,7 @@ pub(super) struct Epoch {
     #[schema(required)]
     curve: Option<Vec<DeviationRow>>,
     /// Reason for which it has no model.
-    #[schema(required, value_type = Option<RefusalSchema>)]
+    #[schema(required)]
     refusal: Option<FitError>,
 }
 
@@ -127,10 +124,8 @@ pub(super) struct ChangeFound {
     /// and `ended` is the time at which that showed.
     withdrawn: bool,
     /// Likeliest cause.
-    #[schema(value_type = CauseSchema)]
     cause: Cause,
     /// All possible causes, the likeliest first.
-    #[schema(value_type = Vec<CauseProbabilitySchema>)]
     causes: Vec<CauseProbability>,
     /// Evidence, a sentence each.
     #[schema(example = json!(["it began at sea", "the logbook has a report of that time"]))]
@@ -140,7 +135,7 @@ pub(super) struct ChangeFound {
     #[schema(required, example = 6.2)]
     deviation_change_deg: Option<f64>,
     /// Change of the ship's permanent magnetism; none where it did not change.
-    #[schema(required, value_type = Option<StepSchema>)]
+    #[schema(required)]
     step: Option<Step>,
     /// Its end; none while it lasts.
     #[schema(required)]

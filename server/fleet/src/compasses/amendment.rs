@@ -6,36 +6,28 @@ use binnacle_platform::http::{Amended, optional_text, text};
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-/// Amendment of a compass.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Amendment {
-    name: Option<String>,
-    role: Option<Role>,
-    #[serde(default)]
-    make: Amended<String>,
-    #[serde(default)]
-    serial_number: Amended<String>,
-    #[serde(default)]
-    binnacle: Amended<String>,
-}
-
 /// Amendment of a compass. Absent fields stay as they are; null removes a value.
-#[derive(ToSchema)]
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
 #[schema(as = CompassAmendment)]
-#[allow(dead_code, reason = "describes Amendment")]
-pub(super) struct AmendmentSchema {
+pub(super) struct Amendment {
+    /// Name.
     #[schema(min_length = 1, max_length = 200)]
     name: Option<String>,
+    /// Role.
     role: Option<Role>,
     /// Maker and type.
-    #[schema(max_length = 200, example = "Cassens & Plath Reflecta 1")]
-    make: Option<String>,
-    #[schema(max_length = 200, example = "34871")]
-    serial_number: Option<String>,
-    /// The binnacle's maker, type and number.
-    #[schema(max_length = 200, example = "Cassens & Plath type 11, no. 2047")]
-    binnacle: Option<String>,
+    #[serde(default)]
+    #[schema(value_type = Option<String>, max_length = 200, example = "Cassens & Plath Reflecta 1")]
+    make: Amended<String>,
+    /// Serial number.
+    #[serde(default)]
+    #[schema(value_type = Option<String>, max_length = 200, example = "34871")]
+    serial_number: Amended<String>,
+    /// Binnacle: maker, type and number.
+    #[serde(default)]
+    #[schema(value_type = Option<String>, max_length = 200, example = "Cassens & Plath type 11, no. 2047")]
+    binnacle: Amended<String>,
 }
 
 impl Amendment {

@@ -6,7 +6,7 @@ mod store;
 pub use store::{ids, insert_standard, of_fleet, of_vessel};
 
 use crate::vessels;
-use amendment::{Amendment, AmendmentSchema};
+use amendment::Amendment;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_platform::access::{Reader, Writer};
@@ -195,7 +195,7 @@ async fn create_compass(
 ///
 /// Absent fields stay as they are; null removes a value.
 #[utoipa::path(patch, path = "/vessels/{id}/compasses/{compass}", tag = "fleet",
-    params(("id" = VesselId, Path), ("compass" = CompassId, Path)), request_body = AmendmentSchema,
+    params(("id" = VesselId, Path), ("compass" = CompassId, Path)), request_body = Amendment,
     responses((status = 200, body = Compass), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem)))]

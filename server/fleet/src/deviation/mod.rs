@@ -34,28 +34,6 @@ pub struct WorstHeading {
     pub band95_deg: Option<f64>,
 }
 
-/// Approximate coefficients of the handbooks, degrees, as an adjuster finds them who swings the
-/// ship.
-#[derive(ToSchema)]
-#[schema(as = HandbookCoefficients)]
-#[allow(
-    dead_code,
-    non_snake_case,
-    reason = "describes binnacle_compass::deviation::CoefficientsInDegrees"
-)]
-pub struct HandbookSchema {
-    /// Constant; includes alignment, reference and variation offsets.
-    A: f64,
-    /// Of the sine of the heading.
-    B: f64,
-    /// Of the cosine of the heading.
-    C: f64,
-    /// Of the sine of twice the heading.
-    D: f64,
-    /// Of the cosine of twice the heading.
-    E: f64,
-}
-
 /// Returns the deviation on compass headings from 0, in steps of `step_deg`.
 ///
 /// # Errors

@@ -4,7 +4,6 @@ use super::select::{Occasion, select_entries};
 use crate::adjustments::CompletedOrder;
 use crate::card;
 use crate::models::StoredModel;
-use crate::samples::SampleReasonSchema;
 use binnacle_compass::angle::{TrueHeading, wrap_180};
 use binnacle_compass::deviation::Prediction;
 use binnacle_compass::result::{SampleDiagnostic, SampleReason};
@@ -70,7 +69,7 @@ pub(super) struct Entry {
     #[schema(required, example = 0.3)]
     pub(super) spread_deg: Option<f64>,
     /// Reason for which the observation has less weight, or none, in the model.
-    #[schema(required, value_type = Option<SampleReasonSchema>)]
+    #[schema(required)]
     pub(super) reason: Option<SampleReason>,
     /// Its observer.
     pub(super) observer: Observer,

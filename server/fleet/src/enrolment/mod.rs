@@ -152,41 +152,6 @@ pub struct EnrolmentCode {
     pub expires_at: Time,
 }
 
-/// A one-time code, to be exchanged for a token.
-#[derive(ToSchema)]
-#[schema(as = EnrolRequest)]
-#[allow(dead_code, reason = "describes binnacle_wire::messages::EnrolRequest")]
-struct EnrolRequestSchema {
-    /// The code the operator was shown.
-    code: String,
-    /// The agent's own version.
-    agent_version: String,
-}
-
-/// Everything the agent needs to send.
-#[derive(ToSchema)]
-#[schema(as = EnrolAnswer)]
-#[allow(dead_code, reason = "describes binnacle_wire::messages::EnrolAnswer")]
-struct EnrolAnswerSchema {
-    /// Bearer token; shown this once.
-    token: String,
-    /// A new stream, opened for this installation.
-    stream: Uuid,
-    vessel_name: String,
-    compass_name: String,
-    /// The server's clock.
-    server_time: Time,
-}
-
-/// An agent's next token.
-#[derive(ToSchema)]
-#[schema(as = NewToken)]
-#[allow(dead_code, reason = "describes binnacle_wire::messages::NewToken")]
-struct NewTokenSchema {
-    /// Bearer token.
-    token: String,
-}
-
 /// List the streams of a vessel's agents
 #[utoipa::path(get, path = "/vessels/{id}/agents", tag = "fleet",
     params(("id" = VesselId, Path), Page),
@@ -269,8 +234,8 @@ async fn revoke_agent(
 
 /// Exchange a one-time code for a token and a stream
 #[utoipa::path(post, path = "/agents/enrol", tag = "agents", security(()),
-    request_body = EnrolRequestSchema,
-    responses((status = 200, body = EnrolAnswerSchema), (status = 404, body = Problem),
+    request_body = EnrolRequest,
+    responses((status = 200, body = EnrolAnswer), (status = 404, body = Problem),
               (status = 410, body = Problem)))]
 async fn enrol(
     State(app): State<App>,
@@ -293,7 +258,7 @@ async fn enrol(
 ///
 /// It is not stored, and not valid until the agent puts it in place.
 #[utoipa::path(post, path = "/agents/token", tag = "agents", security(("token" = [])),
-    responses((status = 200, body = NewTokenSchema), (status = 401, body = Problem)))]
+    responses((status = 200, body = NewToken), (status = 401, body = Problem)))]
 async fn propose_token(agent: Agent) -> Json<NewToken> {
     Json(NewToken {
         token: secret::new_vessel_token(agent.vessel_id.0),
@@ -302,7 +267,7 @@ async fn propose_token(agent: Agent) -> Json<NewToken> {
 
 /// Replace the token of this request
 #[utoipa::path(put, path = "/agents/token", tag = "agents", security(("token" = [])),
-    request_body = NewTokenSchema,
+    request_body = NewToken,
     responses((status = 204), (status = 401, body = Problem), (status = 422, body = Problem)))]
 async fn replace_token(
     request: RequestContext,

@@ -1,8 +1,8 @@
 //! Downlink: the acknowledgement, and updates that the agent lacks.
 
 use crate::agent_auth::Agent;
-use crate::models::{self, CardWithdrawnSchema, ModelSchema, StoredModel};
-use crate::settings::{self, AgentSettings};
+use crate::models::{self, StoredModel};
+use crate::settings;
 use axum::Json;
 use axum::body::Body;
 use axum::response::{IntoResponse, Response};
@@ -10,11 +10,10 @@ use binnacle_compass::model::Model;
 use binnacle_platform::app::App;
 use binnacle_platform::db::row;
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::time::Time;
 use binnacle_wire::downlink::{self, FORM, card_tag};
 use binnacle_wire::messages::{Downlink, ModelDownlink};
 use serde::Deserialize;
-use utoipa::{IntoParams, ToSchema};
+use utoipa::IntoParams;
 use uuid::Uuid;
 
 /// State of the agent, as the request names it.
@@ -55,53 +54,6 @@ impl IntoResponse for DownlinkResponse {
             None => Json(self.downlink).into_response(),
         }
     }
-}
-
-/// The acknowledgement, and what the agent does not have.
-#[derive(ToSchema)]
-#[schema(as = Downlink)]
-#[allow(dead_code, reason = "describes binnacle_wire::messages::Downlink")]
-pub(super) struct DownlinkSchema {
-    /// Every batch up to this one is durable; 0 for none.
-    contiguous_seq: u64,
-    /// The current model, when the agent has another one or none.
-    #[schema(required = false)]
-    model: Option<ModelDownlinkSchema>,
-    /// Withdrawal of the card that the agent has; none while it holds.
-    #[schema(required = false)]
-    card_withdrawn: Option<CardWithdrawnSchema>,
-    /// The current settings, when the agent has others.
-    #[schema(required = false)]
-    settings: Option<AgentSettings>,
-    /// The server's clock.
-    server_time: Time,
-}
-
-/// A model as it is sent to the bridge.
-#[derive(ToSchema)]
-#[schema(as = ModelDownlink)]
-#[allow(dead_code, reason = "describes binnacle_wire::messages::ModelDownlink")]
-pub(super) struct ModelDownlinkSchema {
-    id: Uuid,
-    /// Counts the compass's models from 1.
-    version: u32,
-    /// The time of the last sample in it.
-    data_until: Time,
-    /// Change that withdrew cards from before its epoch; none in the first epoch.
-    #[schema(required = false)]
-    replaces: Option<CardWithdrawnSchema>,
-    model: ModelSchema,
-}
-
-/// A stream just opened.
-#[derive(ToSchema)]
-#[schema(as = OpenStreamAnswer)]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_wire::messages::OpenStreamAnswer"
-)]
-pub(super) struct OpenStreamSchema {
-    stream: Uuid,
 }
 
 pub(super) async fn answer(

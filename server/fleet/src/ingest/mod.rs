@@ -32,8 +32,9 @@ use binnacle_platform::http::{Id, Json, Params};
 use binnacle_platform::time::Time;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::codec::MAX_BYTES;
+use binnacle_wire::messages::Downlink;
 use binnacle_wire::messages::OpenStreamAnswer;
-use downlink::{AgentState, DownlinkResponse, DownlinkSchema, OpenStreamSchema};
+use downlink::{AgentState, DownlinkResponse};
 use metrics::counter;
 use std::time::Duration;
 use utoipa_axum::router::OpenApiRouter;
@@ -62,7 +63,7 @@ where
 
 /// Open a new stream for the same compass
 #[utoipa::path(post, path = "/streams", tag = "agents", security(("token" = [])),
-    responses((status = 201, body = OpenStreamSchema), (status = 401, body = Problem)))]
+    responses((status = 201, body = OpenStreamAnswer), (status = 401, body = Problem)))]
 async fn open_stream(
     State(app): State<App>,
     request: RequestContext,
@@ -83,7 +84,7 @@ async fn open_stream(
     request_body(content = Vec<u8>, content_type = "application/octet-stream",
                  description = "The frame, as crates/wire/FORMAT.md has it"),
     responses((status = 200, description = "As JSON, or in the compact form asked for",
-               content((DownlinkSchema = "application/json"),
+               content((Downlink = "application/json"),
                        (Vec<u8> = "application/octet-stream"))),
               (status = 400, body = Problem), (status = 401, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "Other bytes are stored under this number", body = Problem),
@@ -164,7 +165,7 @@ async fn store_batch(
 #[utoipa::path(get, path = "/streams/{stream}/downlink", tag = "agents", security(("token" = [])),
     params(("stream" = Uuid, Path), AgentState),
     responses((status = 200, description = "As JSON, or in the compact form asked for",
-               content((DownlinkSchema = "application/json"),
+               content((Downlink = "application/json"),
                        (Vec<u8> = "application/octet-stream"))),
               (status = 401, body = Problem), (status = 404, body = Problem)))]
 async fn downlink(

@@ -1,7 +1,6 @@
 //! Logbook reports that agents send from on board.
 
 use super::entry::{NewEntry, invalid_report};
-use super::schema::{BoardAnswerSchema, BoardReportSchema};
 use super::store::{self, Author, Change};
 use crate::agent_auth::Agent;
 use axum::extract::{FromRef, State};
@@ -30,8 +29,8 @@ where
 /// entry withdrawn on shore changes nothing and gets the same response.
 #[utoipa::path(put, path = "/agents/logbook/{id}", tag = "agents", security(("token" = [])),
     params(("id" = EntryId, Path, description = "Made on board")),
-    request_body = BoardReportSchema,
-    responses((status = 200, body = BoardAnswerSchema), (status = 401, body = Problem),
+    request_body = LogbookReport,
+    responses((status = 200, body = LogbookAnswer), (status = 401, body = Problem),
               (status = 404, body = Problem), (status = 422, body = Problem)))]
 async fn put_report(
     State(app): State<App>,

@@ -1,7 +1,6 @@
 //! Amendment of an entry. Absent fields stay as they are; null removes a value.
 
 use super::entry::NewEntry;
-use super::schema::{CargoSchema, KindSchema};
 use binnacle_compass::logbook::{Cargo, LogbookKind};
 use binnacle_platform::http::Amended;
 use binnacle_platform::ids::CompassId;
@@ -10,41 +9,38 @@ use binnacle_wire::logbook::Report;
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-/// Amendment of an entry.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Amendment {
-    kind: Option<LogbookKind>,
-    from: Option<Time>,
-    #[serde(default)]
-    to: Amended<Time>,
-    #[serde(default)]
-    cargo: Amended<Cargo>,
-    #[serde(default)]
-    hatch: Amended<String>,
-    #[serde(default)]
-    port: Amended<String>,
-    note: Option<String>,
-    #[serde(default)]
-    compass_id: Amended<CompassId>,
-}
-
 /// Amendment of an entry. Absent fields stay as they are; null removes a value.
-#[derive(ToSchema)]
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
 #[schema(as = LogbookAmendment)]
-#[allow(dead_code, reason = "describes Amendment")]
-pub(super) struct AmendmentSchema {
-    kind: Option<KindSchema>,
+pub(super) struct Amendment {
+    /// Kind of event.
+    kind: Option<LogbookKind>,
+    /// Time of the event, or its start.
     from: Option<Time>,
-    to: Option<Time>,
-    cargo: Option<CargoSchema>,
-    #[schema(max_length = 100)]
-    hatch: Option<String>,
-    #[schema(max_length = 100)]
-    port: Option<String>,
+    /// Its end.
+    #[serde(default)]
+    #[schema(value_type = Option<Time>)]
+    to: Amended<Time>,
+    /// Kind of magnetic cargo.
+    #[serde(default)]
+    #[schema(value_type = Option<Cargo>)]
+    cargo: Amended<Cargo>,
+    /// Hatch in which the magnetic cargo lies.
+    #[serde(default)]
+    #[schema(value_type = Option<String>, max_length = 100)]
+    hatch: Amended<String>,
+    /// Port.
+    #[serde(default)]
+    #[schema(value_type = Option<String>, max_length = 100)]
+    port: Amended<String>,
+    /// The reporter's own words.
     #[schema(max_length = 1000)]
     note: Option<String>,
-    compass_id: Option<CompassId>,
+    /// Compass that the entry concerns; null for the whole ship.
+    #[serde(default)]
+    #[schema(value_type = Option<CompassId>)]
+    compass_id: Amended<CompassId>,
 }
 
 impl Amendment {

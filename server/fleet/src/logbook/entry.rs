@@ -1,6 +1,5 @@
 //! Entries of the logbook, as requests and responses carry them.
 
-use super::schema::{KindSchema, ReportSchema};
 use binnacle_compass::logbook::{Cargo, LogbookKind};
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::error::{Error, Result};
@@ -17,7 +16,6 @@ use utoipa::{IntoParams, ToSchema};
 pub(super) struct NewEntry {
     /// The event.
     #[serde(flatten)]
-    #[schema(value_type = ReportSchema)]
     pub(super) report: Report,
     /// The compass that it concerns; the whole ship if none is named. Only work on a
     /// compass, and a note, may name one.
@@ -65,7 +63,6 @@ pub(super) struct LogbookEntry {
     pub(super) id: EntryId,
     /// The event.
     #[serde(flatten)]
-    #[schema(value_type = ReportSchema)]
     pub(super) report: Report,
     /// The compass that it concerns; none for the whole ship.
     #[schema(required)]
@@ -158,7 +155,7 @@ pub(super) struct Withdrawal {
 #[into_params(parameter_in = Query)]
 pub(super) struct Filter {
     /// Of this kind only.
-    #[param(value_type = Option<KindSchema>)]
+    #[param(value_type = Option<LogbookKind>)]
     kind: Option<LogbookKind>,
     /// Entries that had not ended before this instant, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]

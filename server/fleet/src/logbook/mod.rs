@@ -12,15 +12,13 @@
 mod agent_reports;
 mod amendment;
 mod entry;
-mod schema;
 mod store;
 
 pub use agent_reports::router as agent_router;
-pub use schema::KindSchema as LogbookKindSchema;
 pub use store::{AdjustmentEntry, of_compass, write_adjustment};
 
 use crate::vessels;
-use amendment::{Amendment, AmendmentSchema};
+use amendment::Amendment;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_platform::access::{Reader, Writer};
@@ -126,7 +124,7 @@ async fn find_entry(
 ///
 /// Absent fields stay as they are; null removes a value. The earlier revision is kept.
 #[utoipa::path(patch, path = "/vessels/{id}/logbook/{entry}", tag = "fleet",
-    params(("id" = VesselId, Path), ("entry" = EntryId, Path)), request_body = AmendmentSchema,
+    params(("id" = VesselId, Path), ("entry" = EntryId, Path)), request_body = Amendment,
     responses((status = 200, body = LogbookEntry), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 410, description = "The entry is withdrawn", body = Problem),

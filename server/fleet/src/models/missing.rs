@@ -1,8 +1,6 @@
 //! Reason for which a compass has no model.
 
 use super::left_out::LeftOut;
-use super::refusal::RefusalSchema;
-use super::schema::CardWithdrawnSchema;
 use axum::http::StatusCode;
 use binnacle_compass::result::FitError;
 use binnacle_platform::db::{Db, row};
@@ -42,7 +40,7 @@ pub struct NoModelFields {
     /// Reason for which the model is refused. Only in `no-model-yet`, and not before the first
     /// samples have been analysed.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, value_type = Option<RefusalSchema>)]
+    #[schema(required = false)]
     refusal: Option<FitError>,
     /// The samples that the logbook leaves out of the current epoch; only in
     /// `no-model-yet`, and only if there are any.
@@ -51,7 +49,7 @@ pub struct NoModelFields {
     left_out: Option<LeftOut>,
     /// Withdrawal of the last model; only in `no-model-yet`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, value_type = Option<CardWithdrawnSchema>)]
+    #[schema(required = false)]
     card_withdrawn: Option<CardWithdrawn>,
 }
 

@@ -6,26 +6,23 @@
 mod downlink_policy;
 mod left_out;
 mod missing;
-mod refusal;
-mod schema;
+mod model_json;
 mod store;
 
 pub use left_out::LeftOut;
 pub use missing::{NoModel, NoModelFields};
-pub use refusal::RefusalSchema;
-pub use schema::{
-    CardWithdrawnSchema, IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema,
-};
+pub use model_json::ModelJson;
 pub use store::{
     StoredModel, card_withdrawn, card_withdrawn_in, current, current_of_fleet, current_of_vessel,
     find_prediction, find_version, insert, list_in_force, list_recent,
 };
 
 use crate::compasses::{self, WhichCompass};
-use crate::deviation::{HandbookSchema, WorstHeading};
+use crate::deviation::WorstHeading;
 use crate::vessels;
 use axum::extract::{FromRef, State};
 use binnacle_compass::deviation::CoefficientsInDegrees;
+use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
@@ -107,10 +104,10 @@ pub struct ModelVersion {
     /// Vertical field there, nT, down positive.
     pub z_nt: f64,
     /// The handbook's coefficients there; none where headings are ambiguous.
-    #[schema(required, value_type = Option<HandbookSchema>)]
+    #[schema(required)]
     pub handbook: Option<CoefficientsInDegrees>,
     /// The fit.
-    #[schema(value_type = ModelSchema)]
+    #[schema(value_type = Model)]
     pub model: ModelJson,
 }
 

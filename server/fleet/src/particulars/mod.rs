@@ -16,7 +16,6 @@ use binnacle_platform::session;
 use binnacle_platform::time::Time;
 use binnacle_schedule::needs::{Ship, Transit};
 use binnacle_schedule::rules::{Canal, DeviationRecord, Flag, Trade};
-use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -60,59 +59,16 @@ pub struct Particulars {
     #[schema(required, maximum = 1_000_000)]
     pub gross_tonnage: Option<u32>,
     /// Its trade.
-    #[schema(value_type = Option<TradeSchema>, required)]
+    #[schema(required)]
     pub trade: Option<Trade>,
     /// True if the compass deviation book is kept.
-    #[schema(value_type = Option<RecordSchema>, required)]
+    #[schema(required)]
     pub deviation_record: Option<DeviationRecord>,
     /// A licence that an adjuster must hold.
     #[schema(required, max_length = 200)]
     pub licence: Option<String>,
     /// Transits of canals with a rule of their own that are planned.
-    #[schema(value_type = Vec<TransitSchema>)]
     pub transits: Vec<Transit>,
-}
-
-/// Trade of a vessel.
-#[derive(Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(as = Trade)]
-#[allow(dead_code, reason = "describes binnacle_schedule::rules::Trade")]
-enum TradeSchema {
-    Bulk,
-    Container,
-    Tanker,
-    GeneralCargo,
-    RoRo,
-    Passenger,
-    Fishing,
-    Offshore,
-    Other,
-}
-
-/// State of the compass deviation book: kept or not.
-#[derive(Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(as = DeviationRecordKept)]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_schedule::rules::DeviationRecord"
-)]
-enum RecordSchema {
-    Kept,
-    NotKept,
-}
-
-/// A planned transit.
-#[derive(ToSchema)]
-#[schema(as = CanalTransit)]
-#[allow(dead_code, reason = "describes binnacle_schedule::needs::Transit")]
-struct TransitSchema {
-    /// `panama`.
-    #[schema(example = "panama")]
-    canal: String,
-    /// On which day.
-    on: NaiveDate,
 }
 
 /// See a vessel's particulars for the rules on adjusting

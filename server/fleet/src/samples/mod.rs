@@ -50,99 +50,10 @@ struct Range {
     compass: Option<CompassId>,
 }
 
-/// A sample and what became of it.
-#[derive(Serialize, ToSchema)]
-#[schema(as = Sample)]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_compass::result::SampleDiagnostic"
-)]
-struct SampleSchema {
-    /// The middle of the stretch.
-    time: Time,
-    /// Degrees north.
-    lat: f64,
-    /// Degrees east.
-    lon: f64,
-    /// Mean raw compass heading.
-    compass_deg: f64,
-    /// Mean gyro heading, as the gyro gave it.
-    #[schema(required)]
-    gyro_deg: Option<f64>,
-    /// Mean satellite-compass heading.
-    #[schema(required)]
-    satellite_deg: Option<f64>,
-    /// Speed over ground, knots.
-    #[schema(required)]
-    sog_kn: Option<f64>,
-    /// Mean rate of turn, degrees a minute, starboard positive.
-    #[schema(required)]
-    rate_of_turn_deg_min: Option<f64>,
-    /// Standard deviation of compass less reference among the windows, degrees.
-    #[schema(required)]
-    spread_deg: Option<f64>,
-    /// Number of settled ten-second windows in the means.
-    windows: u16,
-    /// The earth's variation, degrees, east positive.
-    #[schema(required)]
-    variation_deg: Option<f64>,
-    /// Horizontal field, nT.
-    #[schema(required)]
-    h_nt: Option<f64>,
-    /// Vertical field, nT, down positive.
-    #[schema(required)]
-    z_nt: Option<f64>,
-    /// Reference less variation less compass, degrees.
-    #[schema(required)]
-    deviation_deg: Option<f64>,
-    /// The model's deviation on this heading, here, degrees.
-    #[schema(required)]
-    predicted_deg: Option<f64>,
-    /// Measured less predicted, degrees.
-    #[schema(required)]
-    residual_deg: Option<f64>,
-    /// Robust weight, 0 to 1.
-    weight: f64,
-    /// True if it carried weight in a model.
-    used: bool,
-    /// Reason for which it was left out or counted for less.
-    #[schema(required, value_type = Option<SampleReasonSchema>)]
-    reason: Option<SampleReasonSchema>,
-}
-
-/// Reason for which a sample was left out, or counted for less.
-#[derive(Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(as = SampleReason)]
-#[allow(dead_code, reason = "describes binnacle_compass::result::SampleReason")]
-pub enum SampleReasonSchema {
-    /// Neither gyro nor satellite compass.
-    NoReference,
-    /// Gyro and satellite compass contradict each other, or one repeated itself.
-    ReferenceFailed,
-    /// The compass repeated itself while the ship turned.
-    CompassStuck,
-    /// Before or after the years that the field model covers.
-    OutsideFieldModel,
-    /// The horizontal field is too weak for a compass.
-    FieldTooWeak,
-    /// Taken with magnetic cargo on board.
-    MagneticCargo,
-    /// Taken alongside.
-    Berth,
-    /// Taken in a magnetic storm, over a local anomaly, or near other iron.
-    Disturbance,
-    /// It disagrees with the rest.
-    Outlier,
-    /// Its epoch has no model.
-    NoModel,
-}
-
 /// A page of samples.
 #[derive(Serialize, ToSchema)]
 struct SampleList {
     /// In order of time.
-    #[schema(value_type = Vec<SampleSchema>)]
     items: Vec<SampleDiagnostic>,
     /// `after` of the next page.
     #[schema(required)]

@@ -39,78 +39,12 @@ where
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 pub struct VesselSettings {
     /// Settings of its agents; `version` rises with every change and is ignored in a request.
-    #[schema(value_type = AgentSettings)]
     pub agent: Settings,
     /// Settings of the analysis of its samples.
-    #[schema(value_type = ReadingSettings)]
     pub analysis: AnalysisSettings,
     /// Limits beyond which alerts are raised; the defaults if absent.
     #[serde(default)]
     pub alerts: AlertLimits,
-}
-
-/// Settings of an agent's sampling and sending.
-#[derive(ToSchema)]
-#[allow(dead_code, reason = "describes binnacle_wire::messages::Settings")]
-pub struct AgentSettings {
-    /// Rises with every change; 0 are the defaults.
-    version: u32,
-    /// Speed over ground below which nothing is sampled, knots.
-    min_sog_kn: f64,
-    /// Rate of turn above which a window is refused, degrees a minute.
-    max_rate_of_turn_deg_min: f64,
-    /// Seconds after a turn in which nothing is sampled.
-    settle_s: u32,
-    /// Greatest swing of heading to either side within 30 s, degrees.
-    max_swing_deg: f64,
-    /// The longest stretch that one sample is the mean of, seconds.
-    sample_s: u32,
-    /// A batch is sealed when its first sample is this old, seconds.
-    seal_s: u32,
-}
-
-/// Settings of an analysis.
-#[derive(ToSchema)]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_compass::settings::AnalysisSettings"
-)]
-pub struct ReadingSettings {
-    /// The model of the earth's field.
-    #[schema(value_type = FieldModelSchema)]
-    field_model: FieldModelSchema,
-    /// Correction of the gyro's speed error by the gyro itself.
-    #[schema(value_type = GyroSpeedErrorSchema)]
-    gyro_speed_error: GyroSpeedErrorSchema,
-    /// Standard deviation of a reference's constant error, degrees.
-    reference_constant_sd_deg: f64,
-}
-
-/// Correction of the gyro's speed error by the gyro itself.
-#[derive(Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(as = GyroSpeedError)]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_compass::settings::GyroSpeedError"
-)]
-pub enum GyroSpeedErrorSchema {
-    /// It does.
-    Corrected,
-    /// It does not: the analysis does.
-    Uncorrected,
-}
-
-/// The model of the earth's field.
-#[derive(Serialize, ToSchema)]
-#[serde(rename_all = "lowercase")]
-#[schema(as = FieldModel)]
-#[allow(dead_code, reason = "describes binnacle_compass::field::FieldModel")]
-pub enum FieldModelSchema {
-    /// International Geomagnetic Reference Field, 1900 to 2030.
-    Igrf14,
-    /// World Magnetic Model, 2025 to 2030.
-    Wmm2025,
 }
 
 /// See a vessel's settings

@@ -6,43 +6,33 @@ use binnacle_platform::http::Amended;
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-/// Amendment of a vessel.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Amendment {
-    name: Option<String>,
-    #[serde(default)]
-    imo_number: Amended<String>,
-    #[serde(default)]
-    call_sign: Amended<String>,
-    #[serde(default)]
-    flag: Amended<String>,
-    #[serde(default)]
-    degaussing: Amended<String>,
-    pub(super) in_service: Option<bool>,
-}
-
 /// Amendment of a vessel. Absent fields stay as they are; null removes a value.
-#[derive(ToSchema)]
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
 #[schema(as = VesselAmendment)]
-#[allow(dead_code, reason = "describes Amendment")]
-pub(super) struct AmendmentSchema {
+pub(super) struct Amendment {
+    /// Name.
     #[schema(min_length = 1, max_length = 200)]
     name: Option<String>,
-    /// With its check digit.
-    #[schema(pattern = "^[0-9]{7}$", example = "9074729")]
-    imo_number: Option<String>,
-    #[schema(max_length = 200, example = "EAVN")]
-    call_sign: Option<String>,
-    /// The flag state.
-    #[schema(max_length = 200, example = "Spain")]
-    flag: Option<String>,
-    /// State of its degaussing coils, in words.
-    #[schema(max_length = 200, example = "no coils fitted")]
-    degaussing: Option<String>,
+    /// IMO number with its check digit.
+    #[serde(default)]
+    #[schema(value_type = Option<String>, pattern = "^[0-9]{7}$", example = "9074729")]
+    imo_number: Amended<String>,
+    /// Call sign.
+    #[serde(default)]
+    #[schema(value_type = Option<String>, max_length = 200, example = "EAVN")]
+    call_sign: Amended<String>,
+    /// Flag state.
+    #[serde(default)]
+    #[schema(value_type = Option<String>, max_length = 200, example = "Spain")]
+    flag: Amended<String>,
+    /// State of the degaussing coils, in words.
+    #[serde(default)]
+    #[schema(value_type = Option<String>, max_length = 200, example = "no coils fitted")]
+    degaussing: Amended<String>,
     /// False takes the vessel out of service: it leaves the fleet's lists, has no needs and raises
     /// no alert. All its records stay, and what its agents send is kept.
-    in_service: Option<bool>,
+    pub(super) in_service: Option<bool>,
 }
 
 impl Amendment {

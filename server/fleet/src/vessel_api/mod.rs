@@ -10,7 +10,7 @@ use crate::compasses::{self, Compass};
 use crate::deviation::WorstHeading;
 use crate::models::{self, ModelSummary, StoredModel};
 use crate::vessels::{self, LastPosition, NewVessel, VesselRow};
-use amendment::{Amendment, AmendmentSchema};
+use amendment::Amendment;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_platform::access::{Reader, Writer};
@@ -182,7 +182,7 @@ async fn find_vessel(
 /// Absent fields stay as they are; null removes a value. A vessel with a work order under way
 /// cannot go out of service.
 #[utoipa::path(patch, path = "/vessels/{id}", tag = "fleet", params(("id" = VesselId, Path)),
-    request_body = AmendmentSchema,
+    request_body = Amendment,
     responses((status = 200, body = Vessel), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "A work order of the vessel is under way", body = Problem),

@@ -10,9 +10,9 @@ use crate::berth_session::{berth_api, firm_vessel_view, second_reading_api};
 use crate::completion::completion_api;
 use crate::dispatch::{messages, offer_api, reschedule};
 use crate::work_orders::log::entry::Entry;
+use crate::work_orders::log::entry_list::{EntryLine, EntryList};
 use crate::work_orders::log::firm_view;
 use crate::work_orders::order::Order;
-use crate::work_orders::schema::{LineList, LineSchema};
 use crate::work_orders::summary::{Filter, OrderList};
 use crate::work_orders::{load_order, store};
 use axum::extract::{FromRef, RawPathParams, Request, State as Shared};
@@ -115,14 +115,14 @@ async fn find_work_order(
 /// Exchanges with other firms are withheld from a firm; their hashes stay.
 #[utoipa::path(get, path = "/work-orders/{id}/entries", tag = "adjusting",
     params(("id" = OrderId, Path), Page),
-    responses((status = 200, body = LineList), (status = 401, body = Problem),
+    responses((status = 200, body = EntryList), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn list_entries(
     Shared(app): Shared<App>,
     reader: PartyReader,
     Id(id): Id<OrderId>,
     page: Page,
-) -> Result<Json<LineList>> {
+) -> Result<Json<EntryList>> {
     let summary = store::find_summary(&app.db, reader.tenant, id).await?;
     let after = page.after_number()?;
     let found = store::list_lines(&app.db, summary.vessel_id, id, after, page.fetch()).await?;
@@ -131,10 +131,10 @@ async fn list_entries(
         let entry: Entry = serde_json::from_str(&line)?;
         let line = firm_view::line(reader.tenant, &entry, line, &sha256)?;
         let entry = serde_json::from_str(&line)?;
-        Ok(LineSchema { seq, sha256, entry })
+        Ok(EntryLine { seq, sha256, entry })
     };
-    let items: Result<Vec<LineSchema>> = listed.items.into_iter().map(read).collect();
-    Ok(Json(LineList {
+    let items: Result<Vec<EntryLine>> = listed.items.into_iter().map(read).collect();
+    Ok(Json(EntryList {
         items: items?,
         next: listed.next,
     }))

@@ -14,8 +14,6 @@ use crate::work_orders::payload::basis::Basis;
 use crate::work_orders::payload::chosen_plan::ChosenPlan;
 use crate::work_orders::payload::recorded_reading::RecordedReading;
 use crate::work_orders::refusal::not_adjustable;
-use crate::work_orders::request_schema::BerthReadingSchema;
-use crate::work_orders::schema::OfferSchema;
 use crate::work_orders::state::State;
 use crate::work_orders::store::StoredOrder;
 use crate::work_orders::{load_order, prepare_update, store};
@@ -74,7 +72,7 @@ where
 /// The unit is named, never guessed. An implausible reading is kept in the log and refused, with
 /// the mistakes that would explain it.
 #[utoipa::path(post, path = "/work-orders/{id}/berth-reading", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = BerthReadingSchema,
+    params(("id" = OrderId, Path), Key), request_body = ReadingForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 404, description = "Also when the compass has no model yet", body = Problem),
@@ -169,7 +167,7 @@ fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
 /// Based on the last reading and the present settings of the correctors. Nothing is stored.
 #[utoipa::path(get, path = "/work-orders/{id}/plan", tag = "adjusting",
     params(("id" = OrderId, Path)),
-    responses((status = 200, body = OfferSchema), (status = 401, body = Problem),
+    responses((status = 200, body = Outcome), (status = 401, body = Problem),
               (status = 404, body = Problem),
               (status = 409, description = "There is no reading to plan from", body = Problem),
               (status = 422, description = "There is no plan; the refusals name the cures", body = Problem)))]

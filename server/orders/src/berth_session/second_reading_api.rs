@@ -25,37 +25,8 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Valid};
 use binnacle_platform::idempotency::Key;
 use binnacle_platform::ids::OrderId;
-use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
-
-/// What the magnetometer of the first reading read after the steps, in the same place.
-#[derive(ToSchema)]
-#[schema(as = SecondReading, example = json!({
-    "at": "2026-11-22T10:05:00Z", "forward": 15.1, "starboard": 17.7, "unit": "microtesla"
-}))]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_adjustment::adjust::SecondReadingForm"
-)]
-struct AgainSchema {
-    /// When it was read.
-    at: binnacle_platform::time::Time,
-    /// Horizontal field at the card's centre, bowl out, forward positive.
-    forward: f64,
-    /// The same, starboard positive.
-    starboard: f64,
-    /// Vertical field there, down positive.
-    down: Option<f64>,
-    /// What all three are in.
-    unit: crate::work_orders::request_schema::FieldUnit,
-    /// The ship's true heading, by the same means, where it is no longer what it was.
-    #[schema(minimum = 0, maximum = 360)]
-    heading_true_deg: Option<f64>,
-    /// What the compass read before the bowl was taken out, degrees.
-    #[schema(minimum = 0, maximum = 360)]
-    compass_deg: Option<f64>,
-}
 
 pub(crate) fn router<S>() -> OpenApiRouter<S>
 where
@@ -71,7 +42,7 @@ where
 /// It finds slips that the compass cannot show on the berth's heading. It is optional: without it
 /// such a slip can only be found at sea.
 #[utoipa::path(post, path = "/work-orders/{id}/second-reading", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = AgainSchema,
+    params(("id" = OrderId, Path), Key), request_body = SecondReadingForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "A step is not done, or nothing was moved", body = Problem),

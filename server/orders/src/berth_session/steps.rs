@@ -37,7 +37,6 @@ pub(crate) struct StepReading {
 #[schema(as = CorrectorSettings)]
 pub(crate) struct CorrectorReport {
     /// Setting of each corrector.
-    #[schema(value_type = binnacle_fleet::binnacles::SettingSchema)]
     pub setting: Setting,
     /// Compass reading with these settings, degrees.
     #[serde(default)]

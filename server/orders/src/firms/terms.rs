@@ -62,7 +62,6 @@ where
 pub struct Terms {
     /// Ports served, UN/LOCODE, with the travel cost of a team's day there.
     #[serde(default)]
-    #[schema(value_type = Vec<ServedPortSchema>)]
     pub ports: Vec<ServedPort>,
     /// Fee for a job, euros.
     #[schema(value_type = f64, minimum = 0, maximum = 1_000_000)]
@@ -105,19 +104,6 @@ pub struct Terms {
     #[serde(default)]
     #[schema(value_type = Vec<String>)]
     pub flags: Vec<Flag>,
-}
-
-/// A port that a firm serves.
-#[derive(ToSchema)]
-#[schema(as = ServedPort)]
-#[allow(dead_code, reason = "describes binnacle_schedule::input::ServedPort")]
-struct ServedPortSchema {
-    /// UN/LOCODE.
-    #[schema(example = "NLRTM")]
-    port: String,
-    /// Cost of sending a team there for a day, euros.
-    #[schema(required = false, minimum = 0, maximum = 1_000_000)]
-    travel_eur: f64,
 }
 
 fn default_count() -> u32 {

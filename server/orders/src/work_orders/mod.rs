@@ -20,8 +20,6 @@ pub(crate) mod order_update;
 pub(crate) mod payload;
 pub(crate) mod publish;
 pub(crate) mod refusal;
-pub(crate) mod request_schema;
-pub(crate) mod schema;
 pub(crate) mod state;
 pub(crate) mod store;
 mod subscriber;

@@ -1,6 +1,5 @@
 //! Requests for a new order and for its offer to firms.
 
-use crate::work_orders::request_schema::LimitsSchema;
 use binnacle_adjustment::adjust::Limits;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::http::{optional_text, text};
@@ -53,7 +52,6 @@ pub struct NewOrder {
     pub offer: Option<NewOffer>,
     /// Limits on plans, if not the usual ones.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<LimitsSchema>)]
     pub limits: Option<Limits>,
 }
 

@@ -9,15 +9,12 @@ use crate::work_orders::payload::recorded_reading::BerthCheck;
 use crate::work_orders::payload::recorded_second_reading::SecondReadingResult;
 use crate::work_orders::payload::sea_verification::SeaVerification;
 use crate::work_orders::payload::signed_record::{Completion, KnownKey, RecordedSignature};
-use crate::work_orders::payload::step_result::{StepResult, VerdictSchema};
-use crate::work_orders::request_schema::{BerthReadingSchema, LimitsSchema};
-use crate::work_orders::schema::{ChosenPlanSchema, StepSchema};
+use crate::work_orders::payload::step_result::StepResult;
 use crate::work_orders::state::State;
 use crate::work_orders::summary::Summary;
 use binnacle_adjustment::adjust::{Limits, ReadingForm, Step};
 use binnacle_adjustment::binnacle::Setting;
 use binnacle_compass::angle::wrap_360;
-use binnacle_fleet::binnacles::SettingSchema;
 use binnacle_platform::tenants::Tenant;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -43,24 +40,23 @@ pub(crate) struct Order {
     #[schema(example = "predicted, not a certificate")]
     pub standing: &'static str,
     /// Limits on plans.
-    #[schema(value_type = LimitsSchema)]
     pub limits: Limits,
     /// Last accepted reading of the magnetometer.
-    #[schema(required, value_type = Option<BerthReadingSchema>)]
+    #[schema(required)]
     pub reading: Option<ReadingForm>,
     /// Check of that reading.
     #[schema(required)]
     pub berth_check: Option<BerthCheck>,
     /// Plan being followed.
-    #[schema(required, value_type = Option<ChosenPlanSchema>)]
+    #[schema(required)]
     pub plan: Option<ChosenPlan>,
     /// Number of its steps done.
     pub steps_done: usize,
     /// Next step; `null` when all are done, or there is no plan.
-    #[schema(required, value_type = Option<StepSchema>)]
+    #[schema(required)]
     pub next_step: Option<Step>,
     /// Result of the last step.
-    #[schema(required, value_type = Option<VerdictSchema>)]
+    #[schema(required)]
     pub last_step: Option<StepResult>,
     /// Second reading of the present settings.
     #[schema(required)]
@@ -68,7 +64,7 @@ pub(crate) struct Order {
     /// True if the settings were reported since that reading.
     pub looked_since: bool,
     /// Present setting of the correctors; `null` before the first reading.
-    #[schema(required, value_type = Option<SettingSchema>)]
+    #[schema(required)]
     pub setting: Option<Setting>,
     /// Last reading of the compass at the berth, degrees.
     #[schema(required)]

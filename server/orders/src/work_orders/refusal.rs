@@ -1,7 +1,9 @@
 //! Refusals of a reading or a plan, with their cures.
 
+pub use binnacle_adjustment::adjust::Cure;
+
 use axum::http::StatusCode;
-use binnacle_adjustment::adjust::{Cure as Cured, Refused};
+use binnacle_adjustment::adjust::Refused;
 use binnacle_platform::error::{DomainProblem, Error};
 use serde::{Deserialize, Serialize};
 use serde_json::Map;
@@ -20,31 +22,6 @@ pub struct Refusal {
     pub could_be: Vec<String>,
     /// Cures, the easiest first.
     pub cures: Vec<Cure>,
-}
-
-/// Cure of a refusal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(as = AdjustmentCure)]
-pub enum Cure {
-    /// Read again: heading, axes, unit, away from steel.
-    ReadAgain,
-    /// A few settled headings at sea, for an up-to-date model.
-    HeadingsAtSea,
-    /// Headings in waters with another dip.
-    OtherWaters,
-    /// Wait until the cargo is ashore.
-    AfterDischarge,
-    /// A magnetometer with less error.
-    BetterMagnetometer,
-    /// Another berth, or farther from steel.
-    AnotherBerth,
-    /// Magnets, spheres or pieces of bar that are not on board.
-    OtherCorrectors,
-    /// Check of the lubber line and of the reference's alignment.
-    Alignment,
-    /// Swing of the ship.
-    Swing,
 }
 
 impl Refusal {
@@ -74,23 +51,7 @@ impl From<&Refused> for Refusal {
             // The explanations follow in their own field.
             words: refused.refusal.summary(),
             could_be: refused.refusal.explanations(),
-            cures: refused.cures.iter().copied().map(Cure::from).collect(),
-        }
-    }
-}
-
-impl From<Cured> for Cure {
-    fn from(cure: Cured) -> Cure {
-        match cure {
-            Cured::ReadAgain => Cure::ReadAgain,
-            Cured::HeadingsAtSea => Cure::HeadingsAtSea,
-            Cured::OtherWaters => Cure::OtherWaters,
-            Cured::AfterDischarge => Cure::AfterDischarge,
-            Cured::BetterMagnetometer => Cure::BetterMagnetometer,
-            Cured::AnotherBerth => Cure::AnotherBerth,
-            Cured::OtherCorrectors => Cure::OtherCorrectors,
-            Cured::Alignment => Cure::Alignment,
-            Cured::Swing => Cure::Swing,
+            cures: refused.cures.clone(),
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Orders, port calls and due dates as iCalendar events (RFC 5545).
 //!
-//! What always holds: each keeps its UID, and its SEQUENCE grows with an order's log, a
-//! call's revisions or the versions of a due date; times are UTC, due dates days; the same
-//! make the same bytes.
+//! What always holds: an event keeps its UID, and its SEQUENCE grows with the order's log, the
+//! call's revisions or the versions of the due date. Times are UTC and due dates are days. Equal
+//! records give equal bytes.
 
-use super::store::{Appointment, Call, Due};
+use super::store::{CalendarCall, CalendarDueDate, CalendarOrder};
 use anyhow::Context;
 use binnacle_orders::work_orders::CallFit;
 use binnacle_orders::work_orders::State;
@@ -15,8 +15,8 @@ use chrono::{DateTime, NaiveDate, TimeDelta, Utc};
 use icalendar::{Calendar, Component, Event, EventLike, EventStatus, Property};
 use serde::Deserialize;
 
-/// The calendar of these events.
-pub(super) fn write(name: &str, events: impl Iterator<Item = Event>) -> String {
+/// Returns the calendar of some events.
+pub(super) fn render_calendar(name: &str, events: impl Iterator<Item = Event>) -> String {
     let mut calendar = Calendar {
         properties: Vec::new(),
         components: Vec::new(),
@@ -37,34 +37,40 @@ pub(super) fn write(name: &str, events: impl Iterator<Item = Event>) -> String {
     calendar.to_string()
 }
 
-/// Work orders as events.
+/// Returns work orders as events.
 ///
 /// # Errors
-/// When a time is beyond the calendar's, here and below.
-pub(super) fn orders(
-    orders: &[Appointment],
+/// Fails when a time is outside the range of calendars, as do the next two.
+pub(super) fn render_orders(
+    orders: &[CalendarOrder],
     public_url: Option<&str>,
 ) -> anyhow::Result<impl Iterator<Item = Event>> {
-    let all: anyhow::Result<Vec<Event>> = orders.iter().map(|one| event(one, public_url)).collect();
+    let all: anyhow::Result<Vec<Event>> = orders
+        .iter()
+        .map(|one| render_order(one, public_url))
+        .collect();
     Ok(all?.into_iter())
 }
 
-/// Port calls as events.
-pub(super) fn calls(calls: &[Call]) -> anyhow::Result<impl Iterator<Item = Event>> {
-    let all: anyhow::Result<Vec<Event>> = calls.iter().map(call).collect();
+/// Returns port calls as events.
+pub(super) fn render_calls(calls: &[CalendarCall]) -> anyhow::Result<impl Iterator<Item = Event>> {
+    let all: anyhow::Result<Vec<Event>> = calls.iter().map(render_call).collect();
     Ok(all?.into_iter())
 }
 
-/// Due dates as days.
-pub(super) fn due_dates(
-    due: &[Due],
+/// Returns due dates as events of a day.
+pub(super) fn render_due_dates(
+    due: &[CalendarDueDate],
     public_url: Option<&str>,
 ) -> anyhow::Result<impl Iterator<Item = Event>> {
-    let all: anyhow::Result<Vec<Event>> = due.iter().map(|one| day(one, public_url)).collect();
+    let all: anyhow::Result<Vec<Event>> = due
+        .iter()
+        .map(|one| render_due_date(one, public_url))
+        .collect();
     Ok(all?.into_iter())
 }
 
-fn call(call: &Call) -> anyhow::Result<Event> {
+fn render_call(call: &CalendarCall) -> anyhow::Result<Event> {
     let port = PortCode::parse(&call.port).ok().and_then(ports::find);
     let port = port.map_or_else(
         || call.port.clone(),
@@ -74,15 +80,16 @@ fn call(call: &Call) -> anyhow::Result<Event> {
         Some(berth) => format!("{port}, {berth}"),
         None => port.clone(),
     };
-    let at = utc(call
-        .withdrawn_at
-        .or(call.revised_at)
-        .unwrap_or(call.created_at))?;
-    // Withdrawing is no revision, and comes after the revision that it withdraws.
+    let at = to_utc(
+        call.withdrawn_at
+            .or(call.revised_at)
+            .unwrap_or(call.created_at),
+    )?;
+    // A withdrawal is no revision of its own and comes after the last one.
     let sequence = 2 * call.revision + i64::from(call.withdrawn_at.is_some());
     let mut lines = vec![
-        expected("ETA", call.eta, call.eta_uncertainty_h),
-        expected("ETD", call.etd, call.etd_uncertainty_h),
+        format_time("ETA", call.eta, call.eta_uncertainty_h),
+        format_time("ETD", call.etd, call.etd_uncertainty_h),
     ];
     if call.withdrawn_at.is_some() {
         let why = call.withdrawal_reason.as_deref();
@@ -94,8 +101,8 @@ fn call(call: &Call) -> anyhow::Result<Event> {
         .add_property("SEQUENCE", sequence.to_string())
         .timestamp(at)
         .last_modified(at)
-        .starts(utc(call.eta)?)
-        .ends(utc(call.etd)?)
+        .starts(to_utc(call.eta)?)
+        .ends(to_utc(call.etd)?)
         .summary(&format!("{} at {port}", call.vessel_name))
         .location(&place)
         .description(&lines.join("\n"))
@@ -108,18 +115,18 @@ fn call(call: &Call) -> anyhow::Result<Event> {
     Ok(event.done())
 }
 
-fn expected(what: &str, at: Time, uncertainty_h: f64) -> String {
+fn format_time(label: &str, at: Time, uncertainty_h: f64) -> String {
     let at = at.to_the_minute();
     if uncertainty_h > 0.0 {
-        format!("{what}: {at}, within {uncertainty_h} h nineteen times in twenty")
+        format!("{label}: {at}, ±{uncertainty_h} h (95 %)")
     } else {
-        format!("{what}: {at}")
+        format!("{label}: {at}")
     }
 }
 
-fn day(due: &Due, public_url: Option<&str>) -> anyhow::Result<Event> {
-    let on: NaiveDate = due.day.parse().context("a stored due date")?;
-    let at = utc(due.changed_at)?;
+fn render_due_date(due: &CalendarDueDate, public_url: Option<&str>) -> anyhow::Result<Event> {
+    let on: NaiveDate = due.day.parse().context("stored due date")?;
+    let at = to_utc(due.changed_at)?;
     let mut event = Event::new();
     event
         .uid(&format!("due-{}@binnacle", due.compass_id))
@@ -143,33 +150,33 @@ fn day(due: &Due, public_url: Option<&str>) -> anyhow::Result<Event> {
 
 /// Fields of a log entry that a calendar shows.
 #[derive(Deserialize)]
-struct Written {
+struct LogEntry {
     at: Time,
 }
 
-fn event(order: &Appointment, public_url: Option<&str>) -> anyhow::Result<Event> {
-    let starts = utc(order.planned_at)?;
-    let written: Written = serde_json::from_str(&order.line)?;
+fn render_order(order: &CalendarOrder, public_url: Option<&str>) -> anyhow::Result<Event> {
+    let starts = to_utc(order.planned_at)?;
+    let entry: LogEntry = serde_json::from_str(&order.line)?;
     let place = match &order.berth {
         Some(berth) => format!("{}, {berth}", order.port),
         None => order.port.clone(),
     };
-    let state = in_words(order.state);
+    let state = state_name(order.state);
     let mut event = Event::new();
     event
         .uid(&format!("{}@binnacle", order.id))
         .add_property("SEQUENCE", order.last_seq.to_string())
-        .timestamp(utc(written.at)?)
-        .last_modified(utc(written.at)?)
+        .timestamp(to_utc(entry.at)?)
+        .last_modified(to_utc(entry.at)?)
         .starts(starts)
-        .ends(starts + takes())
+        .ends(starts + usual_duration())
         .summary(&format!(
             "Adjust {}, {} ({state})",
             order.compass_name, order.vessel_name
         ))
         .location(&place)
-        .description(&description(order))
-        .status(status(order));
+        .description(&describe_order(order))
+        .status(event_status(order));
     if let Some(url) = public_url {
         let url = url.trim_end_matches('/');
         event.url(&format!("{url}/work-orders/{}", order.id));
@@ -177,7 +184,7 @@ fn event(order: &Appointment, public_url: Option<&str>) -> anyhow::Result<Event>
     Ok(event.done())
 }
 
-fn description(order: &Appointment) -> String {
+fn describe_order(order: &CalendarOrder) -> String {
     let mut lines = vec![format!("Operator: {}", order.operator_name)];
     if let Some(firm) = &order.firm {
         lines.push(format!("Firm: {firm}"));
@@ -185,19 +192,19 @@ fn description(order: &Appointment) -> String {
     if let Some(adjuster) = &order.adjuster_name {
         lines.push(format!("Adjuster: {adjuster}"));
     }
-    lines.extend(unfit(order).map(str::to_owned));
+    lines.extend(find_warning(order).map(str::to_owned));
     lines.join("\n")
 }
 
-/// An adjustment at the berth takes about so long.
-fn takes() -> TimeDelta {
+/// Returns the usual duration of an adjustment at the berth.
+fn usual_duration() -> TimeDelta {
     #[allow(clippy::cast_possible_truncation, reason = "a few hours")]
     TimeDelta::seconds((JOB_H * 3600.0) as i64)
 }
 
 /// Returns the warning for an order still to be done whose port call has moved.
-fn unfit(order: &Appointment) -> Option<&'static str> {
-    let is_ahead = matches!(
+fn find_warning(order: &CalendarOrder) -> Option<&'static str> {
+    let is_open = matches!(
         order.state,
         State::Offered
             | State::Proposed
@@ -206,7 +213,7 @@ fn unfit(order: &Appointment) -> Option<&'static str> {
             | State::Measured
             | State::Adjusting
     );
-    match order.call_fit.filter(|_| is_ahead)? {
+    match order.call_fit.filter(|_| is_open)? {
         CallFit::Fits => None,
         CallFit::OtherHour => Some(
             "The port call has moved since this time was agreed: another hour of that day is \
@@ -216,24 +223,24 @@ fn unfit(order: &Appointment) -> Option<&'static str> {
             Some("The port call has moved since this time was agreed: a new day is needed.")
         }
         CallFit::NoCall => Some(
-            "The port call that this time was agreed for is withdrawn, or is at another port: \
-             another time is needed.",
+            "The port call of this appointment is withdrawn or at another port: another time is \
+             needed.",
         ),
     }
 }
 
-fn status(order: &Appointment) -> EventStatus {
+fn event_status(order: &CalendarOrder) -> EventStatus {
     match order.state {
         State::Planned | State::Offered | State::Proposed | State::Declined => {
             EventStatus::Tentative
         }
         State::Cancelled => EventStatus::Cancelled,
-        _ if unfit(order).is_some() => EventStatus::Tentative,
+        _ if find_warning(order).is_some() => EventStatus::Tentative,
         _ => EventStatus::Confirmed,
     }
 }
 
-fn in_words(state: State) -> &'static str {
+fn state_name(state: State) -> &'static str {
     match state {
         State::Planned => "planned",
         State::Offered => "offered",
@@ -252,6 +259,6 @@ fn in_words(state: State) -> &'static str {
     }
 }
 
-fn utc(time: Time) -> anyhow::Result<DateTime<Utc>> {
-    DateTime::from_timestamp_micros(time.0.micros()).context("a time beyond the calendar's")
+fn to_utc(time: Time) -> anyhow::Result<DateTime<Utc>> {
+    DateTime::from_timestamp_micros(time.0.micros()).context("time outside the calendar's range")
 }

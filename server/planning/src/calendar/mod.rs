@@ -1,10 +1,10 @@
-//! Calendars: work orders, port calls and due dates where people keep their appointments
-//! (RFC 5545).
+//! Calendar feeds of work orders, port calls and due dates (RFC 5545).
 //!
-//! What always holds: a feed's address is its secret, shown once and stored as a hash; it
-//! shows what its operator or firm sees now, and nothing once it, or who made it, is
-//! removed. Port calls and due dates are the operator's own: no firm's calendar has them.
+//! What always holds: a feed's address is its secret, shown once and stored as a hash. The feed
+//! shows what its operator or firm sees now, and nothing once the feed or its creator is removed.
+//! Port calls and due dates are in the operator's feeds only.
 
+mod feed;
 mod ics;
 mod store;
 mod subscriber;
@@ -26,7 +26,7 @@ use binnacle_platform::ids::{FeedId, VesselId};
 use binnacle_platform::secret;
 use binnacle_platform::session;
 use binnacle_platform::tenants::Tenant;
-use binnacle_platform::time::Time;
+use feed::{Feed, Scope};
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
@@ -35,7 +35,7 @@ use utoipa_axum::routes;
 /// Prefix of a feed's token.
 const PREFIX: &str = "bnc_";
 
-/// The routes of this part.
+/// Returns the routes of this part.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -47,25 +47,7 @@ where
         .routes(routes!(calendar))
 }
 
-/// A calendar that programs subscribe to.
-#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
-#[schema(as = CalendarFeed)]
-struct Feed {
-    /// Its id.
-    id: FeedId,
-    /// Name of the feed.
-    #[schema(example = "Nao Victoria")]
-    name: String,
-    /// The vessel, if it is one's only.
-    #[schema(required)]
-    vessel_id: Option<VesselId>,
-    /// Time of creation.
-    created_at: Time,
-    /// Name of its creator.
-    created_by: String,
-}
-
-/// A calendar to be made.
+/// Calendar feed to create.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NewCalendarFeed, example = json!({ "name": "Our fleet" }))]
@@ -73,34 +55,34 @@ struct NewFeed {
     /// Name of the feed.
     #[schema(min_length = 1, max_length = 200)]
     name: String,
-    /// One of your vessels only, for an operator.
+    /// Limits an operator's feed to one vessel.
     #[serde(default)]
     vessel_id: Option<VesselId>,
 }
 
-/// A calendar just made.
+/// Calendar feed just created.
 #[derive(Serialize, ToSchema)]
 #[schema(as = MadeCalendarFeed)]
 struct MadeFeed {
     #[serde(flatten)]
     about: Feed,
-    /// The address to subscribe to: whoever has it reads the calendar. Never shown again.
+    /// Secret address to subscribe to, which gives access to the calendar. It is shown once.
     #[schema(example = "https://binnacle.example.com/api/v1/calendar.ics?token=bnc_mZ3q8k…")]
     url: String,
 }
 
-/// A page of calendars.
+/// A page of calendar feeds.
 #[derive(Serialize, ToSchema)]
 #[schema(as = CalendarFeedList)]
 struct FeedList {
-    /// In the order in which they were made.
+    /// Feeds, in order of creation.
     items: Vec<Feed>,
     /// `after` of the next page.
     #[schema(required)]
     next: Option<String>,
 }
 
-/// List your calendars
+/// List your calendar feeds
 #[utoipa::path(get, path = "/calendar-feeds", tag = "adjusting", params(Page),
     responses((status = 200, body = FeedList), (status = 401, body = Problem)))]
 async fn list_feeds(
@@ -113,15 +95,15 @@ async fn list_feeds(
     Ok(Json(FeedList { items, next }))
 }
 
-/// Make a calendar
+/// Create a calendar feed
 ///
-/// Of all your work orders, or of one vessel's; for an operator with port calls and due
-/// dates. The answer shows its secret address, this once. It ends when you are removed, shut
-/// out or given another one-time code.
+/// The feed has all your work orders, or those of one vessel; an operator's also has port calls and
+/// due dates. The response shows its secret address, once. The feed ends when your account is
+/// removed, disabled or given a new one-time code.
 #[utoipa::path(post, path = "/calendar-feeds", tag = "adjusting", request_body = NewFeed,
     responses((status = 201, body = MadeFeed), (status = 401, body = Problem),
               (status = 403, body = Problem),
-              (status = 404, description = "The vessel is none of yours", body = Problem),
+              (status = 404, description = "Vessel not found in your fleet", body = Problem),
               (status = 422, body = Problem)))]
 async fn create_feed(
     State(app): State<App>,
@@ -154,9 +136,9 @@ async fn create_feed(
     Ok((StatusCode::CREATED, Json(MadeFeed { about, url })))
 }
 
-/// Remove a calendar
+/// Delete a calendar feed
 ///
-/// Its address shows nothing from now on.
+/// Its address stops working at once.
 #[utoipa::path(delete, path = "/calendar-feeds/{id}", tag = "adjusting",
     params(("id" = FeedId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
@@ -174,29 +156,22 @@ async fn delete_feed(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// By which address a calendar is read.
+/// Address of a calendar.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Address {
-    /// The secret of a calendar; without it, the caller's own orders.
+    /// Secret of a calendar feed; without it the caller's own orders are shown.
     token: Option<String>,
 }
 
-/// Owner of a calendar, whose orders it shows.
-struct Subscriber {
-    name: String,
-    tenant: Tenant,
-    vessel: Option<VesselId>,
-}
-
-impl<S> FromRequestParts<S> for Subscriber
+impl<S> FromRequestParts<S> for Scope
 where
     App: FromRef<S>,
     S: Send + Sync,
 {
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Subscriber> {
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Scope> {
         let Params(address) = Params::<Address>::from_request_parts(parts, state).await?;
         if let Some(token) = address.token {
             let app = App::from_ref(state);
@@ -204,7 +179,7 @@ where
             return found.ok_or(Error::Unauthenticated);
         }
         let reader = PartyReader::from_request_parts(parts, state).await?;
-        Ok(Subscriber {
+        Ok(Scope {
             name: "Binnacle".to_owned(),
             tenant: reader.tenant,
             vessel: None,
@@ -214,29 +189,29 @@ where
 
 /// Read a calendar
 ///
-/// iCalendar (RFC 5545), by a calendar's secret address or as any other route. Of work
-/// orders what is offered or planned is tentative, what a firm has is confirmed. An
-/// operator's calendar has port calls too, and each compass's due date as a day, as it was
-/// looked at within the last quarter of an hour. Each event keeps its `UID`, and its
-/// `SEQUENCE` grows; what is cancelled or withdrawn stays for a season and says so.
+/// iCalendar (RFC 5545), by a feed's secret address or signed in as for any other route. Planned
+/// and offered work orders are tentative, accepted ones confirmed. An operator's calendar also has
+/// port calls, and each compass's due date as a day, at most a quarter of an hour old. Each event
+/// keeps its `UID`, and its `SEQUENCE` grows. Cancelled orders and withdrawn calls stay for some
+/// months, marked.
 #[utoipa::path(get, path = "/calendar.ics", tag = "adjusting", params(Address),
     responses((status = 200, content_type = "text/calendar", body = String),
               (status = 401, body = Problem)))]
-async fn calendar(State(app): State<App>, subscriber: Subscriber) -> Result<Response> {
+async fn calendar(State(app): State<App>, scope: Scope) -> Result<Response> {
     let now = app.clock.now().into();
-    let found = store::appointments(&app.db, subscriber.tenant, subscriber.vessel, now).await?;
-    let (calls, due) = match subscriber.tenant {
+    let found = store::list_orders(&app.db, scope.tenant, scope.vessel, now).await?;
+    let (calls, due) = match scope.tenant {
         Tenant::Firm(_) => (Vec::new(), Vec::new()),
         Tenant::Operator(operator) => (
-            store::calls(&app.db, operator, subscriber.vessel, now).await?,
-            store::due_dates(&app.db, operator, subscriber.vessel).await?,
+            store::list_calls(&app.db, operator, scope.vessel, now).await?,
+            store::list_due_dates(&app.db, operator, scope.vessel).await?,
         ),
     };
     let public_url = app.config.mail.public_url.as_deref();
-    let events = ics::orders(&found, public_url)?
-        .chain(ics::calls(&calls)?)
-        .chain(ics::due_dates(&due, public_url)?);
-    let text = ics::write(&subscriber.name, events);
+    let events = ics::render_orders(&found, public_url)?
+        .chain(ics::render_calls(&calls)?)
+        .chain(ics::render_due_dates(&due, public_url)?);
+    let text = ics::render_calendar(&scope.name, events);
     let headers = [
         (CONTENT_TYPE, "text/calendar; charset=utf-8"),
         (CACHE_CONTROL, "private, max-age=300"),

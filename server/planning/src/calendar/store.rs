@@ -1,6 +1,6 @@
-//! Calendars in the database, and the orders that they show.
+//! Calendar feeds in the database, and the records that they show.
 
-use super::{Feed, Subscriber};
+use super::feed::{Feed, Scope};
 use binnacle_orders::work_orders::CallFit;
 use binnacle_orders::work_orders::State;
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
@@ -11,17 +11,18 @@ use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 use uuid::Uuid;
 
-/// Orders of so long ago are shown no more.
-const SHOWN_FOR_S: f64 = 400.0 * 86_400.0;
-/// Port calls of so long ago are shown no more.
-const OVER_FOR_S: f64 = 90.0 * 86_400.0;
-/// As many as a calendar takes, the latest.
-const MOST: i64 = 2000;
-const MOST_CALLS: i64 = 10_000;
+/// Age to which past orders are shown, seconds.
+const PAST_ORDERS_S: f64 = 400.0 * 86_400.0;
+/// Age to which past port calls are shown, seconds.
+const PAST_CALLS_S: f64 = 90.0 * 86_400.0;
+/// Maximum number of orders in a calendar, the latest.
+const MAX_ORDERS: i64 = 2000;
+/// Maximum number of port calls in a calendar, the latest.
+const MAX_CALLS: i64 = 10_000;
 
-/// A port call as a calendar shows it.
+/// Port call as a calendar shows it.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct Call {
+pub(super) struct CalendarCall {
     pub id: CallId,
     pub vessel_name: String,
     pub port: String,
@@ -37,9 +38,9 @@ pub(super) struct Call {
     pub withdrawal_reason: Option<String>,
 }
 
-/// A due date as a calendar shows it.
+/// Due date as a calendar shows it.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct Due {
+pub(super) struct CalendarDueDate {
     pub vessel_id: VesselId,
     pub vessel_name: String,
     pub compass_id: CompassId,
@@ -52,9 +53,9 @@ pub(super) struct Due {
     pub changed_at: Time,
 }
 
-/// An order as a calendar shows it.
+/// Work order as a calendar shows it.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct Appointment {
+pub(super) struct CalendarOrder {
     pub id: OrderId,
     pub state: State,
     pub port: String,
@@ -65,9 +66,9 @@ pub(super) struct Appointment {
     pub operator_name: String,
     pub firm: Option<String>,
     pub adjuster_name: Option<String>,
-    /// Counts the entries of its log: it is another with each.
+    /// Number of the last log entry, which grows with each change.
     pub last_seq: i64,
-    /// The last of them.
+    /// The last log entry, as JSON.
     pub line: String,
     /// Fit of the planned time to the port call, where the call moved after the time was agreed.
     pub call_fit: Option<CallFit>,
@@ -129,16 +130,13 @@ pub(super) async fn delete(tx: &mut Tx, tenant: Tenant, id: FeedId) -> Result<bo
     Ok(deleted > 0)
 }
 
-/// Removes all calendars that a user made.
-///
-/// # Errors
-/// When the database does.
+/// Deletes all calendar feeds that a user created.
 pub(super) async fn delete_all_of(tx: &mut Tx, user: UserId) -> Result<u64> {
     execute!(tx, "DELETE FROM calendar_feeds WHERE user_id = $1", user)
 }
 
 /// Returns the owner of the calendar with this token, unless its creator is disabled.
-pub(super) async fn find(db: &Db, token_hash: &[u8]) -> Result<Option<Subscriber>> {
+pub(super) async fn find(db: &Db, token_hash: &[u8]) -> Result<Option<Scope>> {
     let found = row!(
         db,
         (String, Option<OperatorId>, Option<FirmId>, Option<VesselId>),
@@ -148,27 +146,27 @@ pub(super) async fn find(db: &Db, token_hash: &[u8]) -> Result<Option<Subscriber
          ORDER BY f.id",
         token_hash
     )?;
-    let whose = |(name, operator, firm, vessel): (_, Option<OperatorId>, Option<FirmId>, _)| {
+    let scope = |(name, operator, firm, vessel): (_, Option<OperatorId>, Option<FirmId>, _)| {
         let tenant = operator.map(Tenant::Operator).or(firm.map(Tenant::Firm))?;
-        Some(Subscriber {
+        Some(Scope {
             name,
             tenant,
             vessel,
         })
     };
-    Ok(found.and_then(whose))
+    Ok(found.and_then(scope))
 }
 
-/// The orders that a tenant sees, of one vessel or of all.
-pub(super) async fn appointments(
+/// Returns the orders that a tenant sees, of one vessel or of all.
+pub(super) async fn list_orders(
     db: &Db,
     tenant: Tenant,
     vessel: Option<VesselId>,
     now: Time,
-) -> Result<Vec<Appointment>> {
+) -> Result<Vec<CalendarOrder>> {
     rows!(
         db,
-        Appointment,
+        CalendarOrder,
         "SELECT o.id, o.port, o.berth, o.planned_at, v.name AS vessel_name,
                 c.name AS compass_name, p.name AS operator_name, o.firm, o.adjuster_name,
                 o.last_seq, e.line, o.call_fit,
@@ -190,21 +188,21 @@ pub(super) async fn appointments(
         tenant.firm(),
         tenant.operator(),
         vessel,
-        Time(now.0.plus_seconds(-SHOWN_FOR_S)),
-        MOST
+        Time(now.0.plus_seconds(-PAST_ORDERS_S)),
+        MAX_ORDERS
     )
 }
 
-/// Port calls of a fleet, or of one vessel of it; those that were withdrawn lately too.
-pub(super) async fn calls(
+/// Returns the port calls of a fleet or of one vessel, withdrawn ones included.
+pub(super) async fn list_calls(
     db: &Db,
     operator: OperatorId,
     vessel: Option<VesselId>,
     now: Time,
-) -> Result<Vec<Call>> {
+) -> Result<Vec<CalendarCall>> {
     rows!(
         db,
-        Call,
+        CalendarCall,
         "SELECT c.id, v.name AS vessel_name, c.port, c.berth, c.eta, c.eta_uncertainty_h, c.etd,
                 c.etd_uncertainty_h, c.revision, c.created_at, c.revised_at, c.withdrawn_at,
                 c.withdrawal_reason
@@ -216,20 +214,20 @@ pub(super) async fn calls(
          LIMIT $4",
         operator,
         vessel,
-        Time(now.0.plus_seconds(-OVER_FOR_S)),
-        MOST_CALLS
+        Time(now.0.plus_seconds(-PAST_CALLS_S)),
+        MAX_CALLS
     )
 }
 
-/// Due dates of a fleet, or of one vessel of it, as they were last looked at.
-pub(super) async fn due_dates(
+/// Returns the recorded due dates of a fleet or of one vessel.
+pub(super) async fn list_due_dates(
     db: &Db,
     operator: OperatorId,
     vessel: Option<VesselId>,
-) -> Result<Vec<Due>> {
+) -> Result<Vec<CalendarDueDate>> {
     rows!(
         db,
-        Due,
+        CalendarDueDate,
         "SELECT n.vessel_id, v.name AS vessel_name, n.compass_id, c.name AS compass_name,
                 n.due_on, n.urgency, n.reason, n.version, n.changed_at
          FROM needs_told n

@@ -1,4 +1,4 @@
-//! Handler of events that calendars depend on.
+//! Handler of events that end calendar feeds.
 
 use super::store;
 use binnacle_platform::db::Tx;

@@ -1,7 +1,7 @@
 //! Facts about a compass that the adjustment rules use, assembled from stored data.
 
-use super::over_limit_since::Since;
-use super::prediction::Ahead;
+use super::over_limit_since::DeviationHistory;
+use super::prediction::PredictedDeviation;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::position::Position;
@@ -21,31 +21,30 @@ use binnacle_schedule::rules::{EventKind, Limit};
 use binnacle_schedule::time::Instant;
 use chrono::NaiveDate;
 
-/// Degrees of heading between those on which the greatest deviation is looked for.
+/// Step of the headings at which the greatest deviation is searched, degrees.
 const STEP_DEG: f64 = 10.0;
 
-/// Facts about a compass.
+/// Facts about a compass that decide its need.
 #[derive(Clone, Debug)]
 pub struct Facts {
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Name of the vessel.
     pub vessel_name: String,
     /// The compass.
     pub compass_id: CompassId,
-    /// Its name.
+    /// Name of the compass.
     pub compass_name: String,
-    /// The ship as rules see her.
+    /// The vessel as rules see it.
     pub ship: Ship,
-    /// A licence that an adjuster must hold.
+    /// Licence that the adjuster must hold.
     pub licence: Option<String>,
     /// The compass as rules see it.
     pub compass: Compass,
-    /// The greatest deviation at the places and on the days ahead.
-    pub ahead: Vec<Ahead>,
-    /// Updated history of deviation at the vessel's position, where it differs from the stored
-    /// one.
-    pub(super) since: Option<Since>,
+    /// Greatest deviation at each place and day to come.
+    pub predicted: Vec<PredictedDeviation>,
+    /// History of the deviation at the vessel's position, where it differs from the stored one.
+    pub(super) changed_history: Option<DeviationHistory>,
 }
 
 /// A logbook entry of work on a compass or on the ship.
@@ -57,17 +56,17 @@ pub(super) struct Work {
     pub(super) to: Option<Time>,
 }
 
-/// The last adjustment that an order brought about.
+/// Last completed adjustment by a work order.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Completed {
     pub(super) at: Time,
-    /// Whether verification by headings at sea is still open.
+    /// True while verification by headings at sea is open.
     pub(super) awaits_verification: bool,
 }
 
-/// A place and a time ahead.
+/// Port and time of an upcoming call.
 #[derive(Clone, Debug)]
-pub(super) struct Waypoint {
+pub(super) struct UpcomingCall {
     pub(super) port: PortCode,
     pub(super) at: Time,
 }
@@ -76,14 +75,14 @@ pub(super) struct Waypoint {
 pub(super) struct Stored<'a> {
     pub(super) work: Vec<&'a Work>,
     pub(super) completed: Option<Completed>,
-    /// Until when headings at sea were looked at that spoke against the last completed order,
-    /// and by how much the worst of them was off, degrees.
+    /// Last heading at sea that contradicts the last completed order, and the largest error,
+    /// degrees.
     pub(super) failed: Option<(Time, f64)>,
     pub(super) model: Option<&'a StoredModel>,
     pub(super) findings: Option<&'a Findings>,
     pub(super) limits: AlertLimits,
-    pub(super) calls: &'a [Waypoint],
-    pub(super) since: &'a Since,
+    pub(super) calls: &'a [UpcomingCall],
+    pub(super) history: &'a DeviationHistory,
 }
 
 /// Name of the vessel's current position.
@@ -92,7 +91,7 @@ const PANAMA_CANAL: &str = "Panama Canal";
 
 impl Facts {
     /// Returns the vessel's particulars that are unknown.
-    pub(super) fn not_known(&self) -> Vec<&'static str> {
+    pub(super) fn unknown_particulars(&self) -> Vec<&'static str> {
         let fields = [
             ("flag_state", self.ship.flag.is_none()),
             ("gross_tonnage", self.ship.gross_tonnage.is_none()),
@@ -104,23 +103,26 @@ impl Facts {
     }
 }
 
-/// The compass as rules see it, the deviation ahead of it, and since when it has been as
-/// great as it is.
-pub(super) fn compass(
+/// Returns the compass as rules see it, its predicted deviations, and the history of its
+/// deviation at the vessel's position.
+pub(super) fn assess_compass(
     stored: &Stored<'_>,
     particulars: &Particulars,
     now: Time,
-) -> (Compass, Vec<Ahead>, Since) {
-    let ahead = ahead(stored, particulars, now);
-    let here = ahead.iter().find(|ahead| ahead.place == HERE);
-    let seen = here.map(|here| stored.since.seen(here.on, here.worst_deviation_deg));
-    let has_been = seen.iter().flat_map(Since::levels);
-    let has_been = has_been.filter(|(on, _)| *on < day(now));
-    let has_been = has_been.map(|(on, worst_deviation_deg)| Predicted {
+) -> (Compass, Vec<PredictedDeviation>, DeviationHistory) {
+    let predicted = predict_deviations(stored, particulars, now);
+    let here = predicted.iter().find(|one| one.place == HERE);
+    let history = here.map(|here| {
+        let worst_deg = here.worst_deviation_deg;
+        stored.history.with_observation(here.on, worst_deg)
+    });
+    let past = history.iter().flat_map(DeviationHistory::levels);
+    let past = past.filter(|(on, _)| *on < day(now));
+    let past = past.map(|(on, worst_deviation_deg)| Predicted {
         on,
         place: None,
         worst_deviation_deg,
-        // It has been as great as that, on whichever side.
+        // The history has sizes alone.
         side: None,
     });
     let adjusted = stored
@@ -131,17 +133,17 @@ pub(super) fn compass(
         .chain(stored.completed.map(|completed| completed.at))
         .filter(|at| *at <= now)
         .max();
-    // What is planned has not happened.
-    let begun = stored.work.iter().filter(|work| work.from <= now);
-    let events = begun.filter_map(|work| {
+    // Planned work is no event yet.
+    let started = stored.work.iter().filter(|work| work.from <= now);
+    let events = started.filter_map(|work| {
         let at = work.to.unwrap_or(work.from);
         Some(Event {
-            kind: event(work.kind)?,
+            kind: rule_event(work.kind)?,
             on: day(at),
             at: Some(Instant(at.0)),
         })
     });
-    // By instants: she may be adjusted anew on the day of the verdict.
+    // By instants: the compass may be adjusted again on the day of the verdict.
     let failed = stored
         .failed
         .filter(|(until, _)| adjusted.is_none_or(|adjusted| *until >= adjusted))
@@ -153,36 +155,36 @@ pub(super) fn compass(
         adjusted_on: adjusted.map(day),
         adjusted_at: adjusted.map(|at| Instant(at.0)),
         events: events.collect(),
-        predicted: has_been.chain(ahead.iter().map(predicted)).collect(),
+        predicted: past.chain(predicted.iter().map(for_rules)).collect(),
         deviation_limit_deg: Limit::try_from(stored.limits.deviation_deg).ok(),
         change: stored
             .findings
-            .and_then(|findings| change(findings, adjusted)),
+            .and_then(|findings| largest_lasting_change(findings, adjusted)),
         failed_verification: failed,
         awaits_verification: stored.completed.is_some_and(|completed| {
             completed.awaits_verification && adjusted == Some(completed.at)
         }),
     };
-    let since = seen.unwrap_or_else(|| stored.since.clone());
-    (compass, ahead, since)
+    let history = history.unwrap_or_else(|| stored.history.clone());
+    (compass, predicted, history)
 }
 
-fn predicted(ahead: &Ahead) -> Predicted {
-    let place = match ahead.place.as_str() {
-        HERE => "her position",
+fn for_rules(predicted: &PredictedDeviation) -> Predicted {
+    let place = match predicted.place.as_str() {
+        HERE => "the vessel's position",
         PANAMA_CANAL => "the Panama Canal",
         port => port,
     };
     Predicted {
-        on: ahead.on,
+        on: predicted.on,
         place: Some(place.to_owned()),
-        worst_deviation_deg: ahead.worst_deviation_deg,
-        side: Some(ahead.side),
+        worst_deviation_deg: predicted.worst_deviation_deg,
+        side: Some(predicted.side),
     }
 }
 
 /// Returns the rule event that a logbook entry stands for, if any.
-fn event(kind: LogbookKind) -> Option<EventKind> {
+fn rule_event(kind: LogbookKind) -> Option<EventKind> {
     match kind {
         LogbookKind::CompassMoved => Some(EventKind::Installation),
         LogbookKind::DryDocking => Some(EventKind::DryDocking),
@@ -191,9 +193,9 @@ fn event(kind: LogbookKind) -> Option<EventKind> {
     }
 }
 
-/// The largest change since the last adjustment that lasts. What a cargo brings it takes
-/// away again, and work that was told of is an event.
-fn change(findings: &Findings, adjusted: Option<Time>) -> Option<Change> {
+/// Returns the largest lasting change since the last adjustment. A cargo's change ends with it,
+/// and work in the logbook is an event of its own.
+fn largest_lasting_change(findings: &Findings, adjusted: Option<Time>) -> Option<Change> {
     let lasting = findings.changes.iter().filter(|found| {
         let change = &found.change;
         let cause = change.cause;
@@ -213,13 +215,17 @@ fn change(findings: &Findings, adjusted: Option<Time>) -> Option<Change> {
     sized.max_by(|one, other| one.size_deg.abs().total_cmp(&other.size_deg.abs()))
 }
 
-/// The greatest deviation where the ship is, at her calls and at her transits; what the
-/// model knows only roughly is left out, and so is everything without a model.
-fn ahead(stored: &Stored<'_>, particulars: &Particulars, now: Time) -> Vec<Ahead> {
+/// Predicts the greatest deviation at the vessel's position, port calls and transits. Places where
+/// the model's band is too wide are left out; without a model there is none.
+fn predict_deviations(
+    stored: &Stored<'_>,
+    particulars: &Particulars,
+    now: Time,
+) -> Vec<PredictedDeviation> {
     let Some(model) = stored.model else {
         return Vec::new();
     };
-    let mut ahead = Vec::new();
+    let mut predicted = Vec::new();
     let here = EarthField {
         h_nt: model.h_nt,
         z_nt: model.z_nt,
@@ -228,12 +234,12 @@ fn ahead(stored: &Stored<'_>, particulars: &Particulars, now: Time) -> Vec<Ahead
         let worst = table(&model.model.0, earth, STEP_DEG)
             .ok()
             .and_then(|rows| worst_of(&rows));
-        let sure = worst.filter(|worst| {
+        let certain = worst.filter(|worst| {
             worst
                 .band95_deg
                 .is_some_and(|band| band <= stored.limits.band95_deg)
         });
-        ahead.extend(sure.map(|worst| Ahead {
+        predicted.extend(certain.map(|worst| PredictedDeviation {
             on,
             place: place.to_owned(),
             worst_deviation_deg: worst.deviation_deg.abs(),
@@ -245,7 +251,7 @@ fn ahead(stored: &Stored<'_>, particulars: &Particulars, now: Time) -> Vec<Ahead
         let Some(port) = ports::find(call.port) else {
             continue;
         };
-        if let Some(earth) = earth(port.position, call.at.0) {
+        if let Some(earth) = earth_field(port.position, call.at.0) {
             add(day(call.at), port.name, earth);
         }
     }
@@ -255,15 +261,17 @@ fn ahead(stored: &Stored<'_>, particulars: &Particulars, now: Time) -> Vec<Ahead
         let noon = transit.on.and_hms_opt(12, 0, 0).map(|noon| noon.and_utc());
         let noon = noon.and_then(|noon| Timestamp::from_micros(noon.timestamp_micros()).ok());
         if transit.on >= day(now)
-            && let Some(earth) = position.zip(noon).and_then(|(place, at)| earth(place, at))
+            && let Some(earth) = position
+                .zip(noon)
+                .and_then(|(place, at)| earth_field(place, at))
         {
             add(transit.on, PANAMA_CANAL, earth);
         }
     }
-    ahead
+    predicted
 }
 
-fn earth(position: Position, at: Timestamp) -> Option<EarthField> {
+fn earth_field(position: Position, at: Timestamp) -> Option<EarthField> {
     let found = field(FieldModel::Wmm2025, position, 0.0, at)
         .or_else(|_| field(FieldModel::Igrf14, position, 0.0, at));
     found.ok().map(|field| field.for_ship())

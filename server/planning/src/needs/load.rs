@@ -1,7 +1,7 @@
 //! Loading of the facts for needs from the database: a few queries for a whole fleet.
 
-use super::facts::{Completed, Facts, Stored, Waypoint, Work, compass};
-use super::over_limit_since::{self, Since};
+use super::facts::{Completed, Facts, Stored, UpcomingCall, Work, assess_compass};
+use super::over_limit_since::{self, DeviationHistory};
 use crate::port_calls;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_fleet::analysis::Findings;
@@ -19,53 +19,54 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use uuid::Uuid;
 
-type Of = (VesselId, CompassId);
+/// Vessel and compass: the key of what is stored of a compass.
+type CompassKey = (VesselId, CompassId);
 
-/// Everything, by vessel or by compass.
-struct Loaded {
+/// Stored records of a fleet, by vessel or by compass.
+struct FleetRecords {
     vessels: Vec<(VesselId, String, Option<String>)>,
     compasses: Vec<Compass>,
     particulars: BTreeMap<VesselId, Particulars>,
     work: BTreeMap<VesselId, Vec<Work>>,
-    completed: BTreeMap<Of, Completed>,
-    failed: BTreeMap<Of, (Time, f64)>,
+    completed: BTreeMap<CompassKey, Completed>,
+    failed: BTreeMap<CompassKey, (Time, f64)>,
     models: Vec<StoredModel>,
-    findings: BTreeMap<Of, Findings>,
+    findings: BTreeMap<CompassKey, Findings>,
     limits: BTreeMap<VesselId, AlertLimits>,
-    calls: BTreeMap<VesselId, Vec<Waypoint>>,
-    since: BTreeMap<Of, Since>,
+    calls: BTreeMap<VesselId, Vec<UpcomingCall>>,
+    histories: BTreeMap<CompassKey, DeviationHistory>,
 }
 
 /// Returns the facts about a fleet's compasses, or about one vessel's in it.
-pub async fn of_fleet(
+pub async fn load_facts(
     app: &App,
     operator: OperatorId,
     vessel: Option<VesselId>,
 ) -> Result<Vec<Facts>> {
     let now = app.clock.now().into();
-    let loaded = Loaded::of(&app.db, operator, vessel, now).await?;
-    // Deviation at a thousand ships' calls takes a moment.
-    Ok(tokio::task::spawn_blocking(move || loaded.facts(now)).await?)
+    let records = FleetRecords::load(&app.db, operator, vessel, now).await?;
+    // Predicting deviation at a thousand ships' calls takes time: not on an async thread.
+    Ok(tokio::task::spawn_blocking(move || records.facts(now)).await?)
 }
 
-impl Loaded {
-    async fn of(
+impl FleetRecords {
+    async fn load(
         db: &Db,
         operator: OperatorId,
         vessel: Option<VesselId>,
         now: Time,
-    ) -> Result<Loaded> {
+    ) -> Result<FleetRecords> {
         let (first, last) = vessel.map_or((VesselId(Uuid::nil()), VesselId(Uuid::max())), |one| {
             (one, one)
         });
-        let mut calls: BTreeMap<VesselId, Vec<Waypoint>> = BTreeMap::new();
-        for call in port_calls::ahead(db, operator, now).await? {
+        let mut calls: BTreeMap<VesselId, Vec<UpcomingCall>> = BTreeMap::new();
+        for call in port_calls::upcoming_of_fleet(db, operator, now).await? {
             let (port, at) = (call.content()?.port, call.eta);
             let at = at.max(now);
-            let of = calls.entry(call.vessel_id).or_default();
-            of.push(Waypoint { port, at });
+            let of_vessel = calls.entry(call.vessel_id).or_default();
+            of_vessel.push(UpcomingCall { port, at });
         }
-        Ok(Loaded {
+        Ok(FleetRecords {
             vessels: rows!(
                 db,
                 (VesselId, String, Option<String>),
@@ -78,15 +79,15 @@ impl Loaded {
                 last
             )?,
             compasses: compasses::of_fleet(db, operator, first, last).await?,
-            particulars: particulars(db, operator).await?,
-            work: work(db, operator).await?,
-            completed: completed(db, operator).await?,
-            failed: failed(db, operator).await?,
+            particulars: load_particulars(db, operator).await?,
+            work: load_work(db, operator).await?,
+            completed: load_completed(db, operator).await?,
+            failed: load_failed(db, operator).await?,
             models: models::current_of_fleet(db, operator, first, last).await?,
-            findings: findings(db, operator).await?,
-            limits: limits(db, operator).await?,
+            findings: load_findings(db, operator).await?,
+            limits: load_limits(db, operator).await?,
             calls,
-            since: over_limit_since::noted(db, operator).await?,
+            histories: over_limit_since::list_histories(db, operator).await?,
         })
     }
 
@@ -96,32 +97,36 @@ impl Loaded {
             .iter()
             .map(|vessel| (vessel.0, vessel))
             .collect();
-        let models: BTreeMap<Of, &StoredModel> = self
+        let models: BTreeMap<CompassKey, &StoredModel> = self
             .models
             .iter()
             .map(|model| ((model.vessel_id, model.compass_id), model))
             .collect();
-        let (default, none, never) = (Particulars::default(), Vec::new(), Since::default());
+        let (default, no_work, no_history) = (
+            Particulars::default(),
+            Vec::new(),
+            DeviationHistory::default(),
+        );
         let facts = self.compasses.iter().filter_map(|one| {
             let vessel = one.vessel_id;
-            let of = (vessel, one.id);
+            let key = (vessel, one.id);
             let (_, name, flag) = names.get(&vessel)?;
             let particulars = self.particulars.get(&vessel).unwrap_or(&default);
-            let hers = self.work.get(&vessel).unwrap_or(&none).iter();
+            let work = self.work.get(&vessel).unwrap_or(&no_work).iter();
             let stored = Stored {
-                work: hers
+                work: work
                     .filter(|work| work.compass_id.is_none_or(|only| only == one.id))
                     .collect(),
-                completed: self.completed.get(&of).copied(),
-                failed: self.failed.get(&of).copied(),
-                model: models.get(&of).copied(),
-                findings: self.findings.get(&of),
+                completed: self.completed.get(&key).copied(),
+                failed: self.failed.get(&key).copied(),
+                model: models.get(&key).copied(),
+                findings: self.findings.get(&key),
                 limits: self.limits.get(&vessel).copied().unwrap_or_default(),
                 calls: self.calls.get(&vessel).map_or(&[], Vec::as_slice),
-                since: self.since.get(&of).unwrap_or(&never),
+                history: self.histories.get(&key).unwrap_or(&no_history),
             };
-            let (compass, ahead, since) = compass(&stored, particulars, now);
-            let since = Some(since).filter(|since| since != stored.since);
+            let (compass, predicted, history) = assess_compass(&stored, particulars, now);
+            let changed_history = Some(history).filter(|history| history != stored.history);
             Some(Facts {
                 vessel_id: vessel,
                 vessel_name: name.clone(),
@@ -130,15 +135,18 @@ impl Loaded {
                 ship: particulars.ship(flag.as_deref()),
                 licence: particulars.licence.clone(),
                 compass,
-                ahead,
-                since,
+                predicted,
+                changed_history,
             })
         });
         facts.collect()
     }
 }
 
-async fn particulars(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Particulars>> {
+async fn load_particulars(
+    db: &Db,
+    operator: OperatorId,
+) -> Result<BTreeMap<VesselId, Particulars>> {
     let found = rows!(
         db,
         (VesselId, String),
@@ -152,8 +160,8 @@ async fn particulars(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId,
     found.into_iter().map(read).collect()
 }
 
-/// Returns the work in the logbooks, without adjustments that cancelled orders left behind.
-async fn work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Vec<Work>>> {
+/// Returns the work in the logbooks, without adjustments of cancelled orders.
+async fn load_work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Vec<Work>>> {
     let cancelled: BTreeSet<String> = rows!(
         db,
         (OrderId,),
@@ -198,8 +206,8 @@ async fn work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Vec<Wo
     Ok(work)
 }
 
-/// Each compass's last.
-async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Completed>> {
+/// Returns the last completed adjustment of each compass.
+async fn load_completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, Completed>> {
     let found = rows!(
         db,
         (VesselId, CompassId, Time, State),
@@ -209,8 +217,8 @@ async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Complet
          ORDER BY o.vessel_id, o.completed_at, o.id",
         operator
     )?;
-    let by = |(vessel, compass, at, state)| {
-        // What is closed without a word from the sea is never more than predicted.
+    let keyed = |(vessel, compass, at, state)| {
+        // An order closed without verification stays a prediction.
         let awaits_verification = matches!(state, State::Adjusted | State::ClosedUnverified);
         let completed = Completed {
             at,
@@ -218,14 +226,13 @@ async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Complet
         };
         ((vessel, compass), completed)
     };
-    // Of one compass the last stays.
-    Ok(found.into_iter().map(by).collect())
+    // Rows are in order of time: the last of a compass stays.
+    Ok(found.into_iter().map(keyed).collect())
 }
 
-/// Orders that stand failed, or did when they were closed, where no other of the compass was
-/// completed later: until when headings at sea were looked at, and by how much the worst of
-/// them was off.
-async fn failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, (Time, f64)>> {
+/// Returns the last failed verification of each compass without a later completed order: time of
+/// the last heading at sea, and the largest error in degrees.
+async fn load_failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, (Time, f64)>> {
     let found = rows!(
         db,
         (VesselId, CompassId, Time, String),
@@ -245,17 +252,17 @@ async fn failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, (Time, f64
     let mut failed = BTreeMap::new();
     for (vessel, compass, _, line) in found {
         let entry: Value = serde_json::from_str(&line)?;
-        let said = &entry["content"];
-        let off_deg = said["verification"]["off_deg"].as_f64();
+        let content = &entry["content"];
+        let off_deg = content["verification"]["off_deg"].as_f64();
         if let Some(off_deg) = off_deg {
-            let until: Time = serde_json::from_value(said["until"].clone())?;
+            let until: Time = serde_json::from_value(content["until"].clone())?;
             failed.insert((vessel, compass), (until, off_deg));
         }
     }
     Ok(failed)
 }
 
-async fn findings(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Findings>> {
+async fn load_findings(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, Findings>> {
     let found = rows!(
         db,
         (VesselId, CompassId, Option<String>),
@@ -274,7 +281,7 @@ async fn findings(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Findings
     Ok(findings)
 }
 
-async fn limits(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, AlertLimits>> {
+async fn load_limits(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, AlertLimits>> {
     let found = rows!(
         db,
         (VesselId, String),

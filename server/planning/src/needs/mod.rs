@@ -8,14 +8,12 @@ mod load;
 mod need;
 mod over_limit_since;
 mod prediction;
-mod schema;
 
 pub use facts::Facts;
-pub use load::of_fleet;
-pub use need::Need;
-pub use schema::UrgencySchema;
+pub use load::load_facts;
+pub use need::{Need, find_need};
 
-use crate::schedule;
+use crate::schedule_settings;
 use axum::extract::{FromRef, State};
 use binnacle_fleet::vessels;
 use binnacle_platform::access::Reader;
@@ -23,14 +21,11 @@ use binnacle_platform::app::App;
 use binnacle_platform::error::{Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Params};
 use binnacle_platform::ids::{CompassId, OperatorId, VesselId};
-use binnacle_schedule::needs::{Terms, due};
-use binnacle_schedule::rules::built_in_rules;
-use chrono::{Datelike, NaiveDate};
-use need::{Filter, NeedList};
+use need::{Filter, NeedList, day_number};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes of this part.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -54,7 +49,7 @@ async fn list_needs(
     Params(filter): Params<Filter>,
     page: Page,
 ) -> Result<Json<NeedList>> {
-    listed(&app, reader.operator, None, &filter, &page).await
+    list_page(&app, reader.operator, None, &filter, &page).await
 }
 
 /// List a vessel's needs
@@ -70,10 +65,10 @@ async fn list_vessel_needs(
     page: Page,
 ) -> Result<Json<NeedList>> {
     vessels::must_be_in_fleet(&app.db, reader.operator, vessel).await?;
-    listed(&app, reader.operator, Some(vessel), &filter, &page).await
+    list_page(&app, reader.operator, Some(vessel), &filter, &page).await
 }
 
-async fn listed(
+async fn list_page(
     app: &App,
     operator: OperatorId,
     vessel: Option<VesselId>,
@@ -81,12 +76,12 @@ async fn listed(
     page: &Page,
 ) -> Result<Json<NeedList>> {
     let after = page.after_time()?.map(|(day, id)| (day, CompassId(id)));
-    let facts = of_fleet(app, operator, vessel).await?;
-    let terms = schedule::terms(&app.db, operator).await?;
+    let facts = load_facts(app, operator, vessel).await?;
+    let terms = schedule_settings::terms(&app.db, operator).await?;
     let today = app.clock.now().to_chrono().date_naive();
     let mut needs: Vec<Need> = facts
         .iter()
-        .filter_map(|facts| need(facts, &terms, today))
+        .filter_map(|facts| find_need(facts, &terms, today))
         .filter(|need| filter.urgency.is_none_or(|only| need.urgency == only))
         .filter(|need| filter.due_by.is_none_or(|last| need.due_on <= last))
         .filter(|need| after.is_none_or(|after| (day_number(need.due_on), need.compass_id) > after))
@@ -99,24 +94,15 @@ async fn listed(
     }))
 }
 
-/// The need of a compass; none when no rule binds its ship and nothing is wrong.
-pub fn need(facts: &Facts, terms: &Terms, today: NaiveDate) -> Option<Need> {
-    let due = due(&facts.ship, &facts.compass, built_in_rules(), terms, today)?;
-    Some(Need::new(facts, due))
-}
-
-/// Notes since when deviations have been as great as they are, where that is news.
-pub async fn note_since(app: &App, facts: &[Facts]) -> Result<()> {
+/// Stores the deviation histories that have changed.
+pub async fn store_deviation_histories(app: &App, facts: &[Facts]) -> Result<()> {
     for facts in facts {
-        if let Some(news) = &facts.since {
+        if let Some(history) = &facts.changed_history {
             let mut tx = app.db.begin().await?;
-            over_limit_since::note(&mut tx, (facts.vessel_id, facts.compass_id), news).await?;
+            over_limit_since::store_history(&mut tx, facts.vessel_id, facts.compass_id, history)
+                .await?;
             tx.commit().await?;
         }
     }
     Ok(())
-}
-
-fn day_number(day: NaiveDate) -> i64 {
-    i64::from(day.num_days_from_ce())
 }

@@ -1,32 +1,31 @@
-//! A need, as it is shown.
+//! A need as the API shows it.
 
-use super::prediction::Ahead;
-use super::schema::{CauseKindSchema, UrgencySchema};
+use super::facts::Facts;
+use super::prediction::PredictedDeviation;
 use binnacle_platform::ids::{CompassId, VesselId};
-use binnacle_schedule::needs::{CauseKind, Due, Urgency};
-use binnacle_schedule::rules::{Rule, built_in_rules};
-use chrono::NaiveDate;
+use binnacle_schedule::needs::{CauseKind, Due, Terms, Urgency, due};
+use binnacle_schedule::rules::{Read, Rule, built_in_rules};
+use chrono::{Datelike, NaiveDate};
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
-/// A compass, and when and why it is to be adjusted next.
+/// Next adjustment of a compass: due date and causes.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = AdjustmentNeed)]
 pub struct Need {
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Name of the vessel.
     pub vessel_name: String,
     /// The compass.
     pub compass_id: CompassId,
-    /// Its name.
+    /// Name of the compass.
     pub compass_name: String,
-    /// The last day on which it may be adjusted.
+    /// Last day for the adjustment.
     pub due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
-    /// Reason in plain words.
+    /// Reason of the due date, as a sentence.
     #[schema(
         example = "24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G, \
                         read second-hand)"
@@ -34,12 +33,12 @@ pub struct Need {
     pub reason: String,
     /// All causes, the earliest first.
     pub causes: Vec<Cause>,
-    /// The day of the last adjustment on record.
+    /// Day of the last adjustment on record.
     #[schema(required)]
     pub adjusted_on: Option<NaiveDate>,
-    /// The greatest deviation predicted for the places and days ahead, where the model is
-    /// sure enough to tell.
-    pub predicted: Vec<Ahead>,
+    /// Greatest deviation predicted for each place and day to come, where the model's band is
+    /// narrow enough.
+    pub predicted: Vec<PredictedDeviation>,
     /// Particulars of the vessel that are unknown; a rule that depends on one binds the vessel.
     #[schema(example = json!(["gross_tonnage"]))]
     pub not_known: Vec<&'static str>,
@@ -50,21 +49,20 @@ pub struct Need {
 #[schema(as = NeedCause)]
 pub struct Cause {
     /// Kind of cause.
-    #[schema(value_type = CauseKindSchema)]
     pub kind: CauseKind,
-    /// By when it wants the compass adjusted.
+    /// Due date by this cause.
     pub due_on: NaiveDate,
-    /// In words.
+    /// Reason, as a sentence.
     pub reason: String,
-    /// The rule, where it is one.
+    /// The rule, if the cause is one.
     #[schema(required)]
     pub rule: Option<RuleCited>,
 }
 
-/// A rule, and where it is written.
+/// Citation of a rule.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct RuleCited {
-    /// Its name here, which stays when its words change.
+    /// Stable name of the rule.
     #[schema(example = "iso-25862-interval")]
     pub id: String,
     /// Issuer and name of the document.
@@ -72,7 +70,7 @@ pub struct RuleCited {
     /// Section of the document.
     #[schema(required)]
     pub section: Option<String>,
-    /// Whether the rule was read in a copy or a report rather than in the document itself.
+    /// True when the rule was read in a copy or a report, not in the document itself.
     pub second_hand: bool,
 }
 
@@ -80,7 +78,7 @@ pub struct RuleCited {
 #[derive(Serialize, ToSchema)]
 #[schema(as = AdjustmentNeedList)]
 pub(super) struct NeedList {
-    /// The first due first.
+    /// Needs, the first due first.
     pub(super) items: Vec<Need>,
     /// `after` of the next page.
     #[schema(required)]
@@ -91,21 +89,26 @@ pub(super) struct NeedList {
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct Filter {
-    /// Of this urgency only.
-    #[param(value_type = Option<UrgencySchema>)]
+    /// Only needs of this urgency.
     pub(super) urgency: Option<Urgency>,
-    /// Due on this day or before.
+    /// Only needs due on this day or before.
     pub(super) due_by: Option<NaiveDate>,
 }
 
+/// Returns the need of a compass; `None` when no rule binds its ship and nothing is wrong.
+pub fn find_need(facts: &Facts, terms: &Terms, today: NaiveDate) -> Option<Need> {
+    let due = due(&facts.ship, &facts.compass, built_in_rules(), terms, today)?;
+    Some(Need::new(facts, due))
+}
+
 impl Need {
-    /// Puts a need together.
-    pub(super) fn new(facts: &super::facts::Facts, due: Due) -> Need {
+    /// Builds the need from facts and due date.
+    fn new(facts: &Facts, due: Due) -> Need {
         let causes = due.causes.into_iter().map(|cause| Cause {
             kind: cause.kind,
             due_on: cause.due,
             reason: cause.reason,
-            rule: cause.rule.as_deref().and_then(cited),
+            rule: cause.rule.as_deref().and_then(find_citation),
         });
         Need {
             vessel_id: facts.vessel_id,
@@ -117,23 +120,28 @@ impl Need {
             reason: due.reason,
             causes: causes.collect(),
             adjusted_on: facts.compass.adjusted_on,
-            predicted: facts.ahead.clone(),
-            not_known: facts.not_known(),
+            predicted: facts.predicted.clone(),
+            not_known: facts.unknown_particulars(),
         }
     }
 
-    /// `after` of a page that begins behind it.
+    /// Returns the cursor of the page after this need.
     pub(super) fn cursor(&self) -> String {
-        format!("{}.{}", super::day_number(self.due_on), self.compass_id)
+        format!("{}.{}", day_number(self.due_on), self.compass_id)
     }
 }
 
-fn cited(id: &str) -> Option<RuleCited> {
+fn find_citation(id: &str) -> Option<RuleCited> {
     let rule: &Rule = built_in_rules().iter().find(|rule| rule.id == id)?;
     Some(RuleCited {
         id: rule.id.clone(),
         document: rule.citation.document.clone(),
         section: rule.citation.section.clone(),
-        second_hand: rule.citation.read == binnacle_schedule::rules::Read::SecondHand,
+        second_hand: rule.citation.read == Read::SecondHand,
     })
+}
+
+/// Returns the number of a day, for cursors.
+pub(super) fn day_number(day: NaiveDate) -> i64 {
+    i64::from(day.num_days_from_ce())
 }

@@ -9,17 +9,17 @@ use binnacle_platform::ids::{CompassId, OperatorId, VesselId};
 use chrono::NaiveDate;
 use std::collections::BTreeMap;
 
-/// Levels are whole multiples of this, degrees: they would be as many as days otherwise.
+/// Step between levels, degrees. Without it each day would add a level.
 const STEP_DEG: f64 = 0.1;
 
-/// Days, each with what the deviation has been at least since, degrees: later days have
-/// higher ones.
+/// Days, each with the level in degrees that the deviation has had or exceeded since. Later days
+/// have higher levels.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Since(Vec<(NaiveDate, f64)>);
+pub(super) struct DeviationHistory(Vec<(NaiveDate, f64)>);
 
-impl Since {
-    /// After one more look, at which it was so great.
-    pub(super) fn seen(&self, on: NaiveDate, worst_deg: f64) -> Since {
+impl DeviationHistory {
+    /// Returns the history after one more observation.
+    pub(super) fn with_observation(&self, on: NaiveDate, worst_deg: f64) -> DeviationHistory {
         let level_deg = (worst_deg / STEP_DEG + 1e-6).floor() * STEP_DEG;
         let mut levels = self.0.clone();
         let mut since = on;
@@ -27,20 +27,20 @@ impl Since {
             since = since.min(day);
         }
         levels.push((since, level_deg));
-        Since(levels)
+        DeviationHistory(levels)
     }
 
-    /// The days and levels, the earliest first.
+    /// Returns the days and levels, the earliest first.
     pub(super) fn levels(&self) -> impl Iterator<Item = (NaiveDate, f64)> {
         self.0.iter().copied()
     }
 }
 
 /// Returns the stored history of each of an operator's compasses.
-pub(super) async fn noted(
+pub(super) async fn list_histories(
     db: &Db,
     operator: OperatorId,
-) -> Result<BTreeMap<(VesselId, CompassId), Since>> {
+) -> Result<BTreeMap<(VesselId, CompassId), DeviationHistory>> {
     let found = rows!(
         db,
         (VesselId, CompassId, String, f64),
@@ -50,25 +50,26 @@ pub(super) async fn noted(
          ORDER BY s.vessel_id, s.compass_id, s.since",
         operator
     )?;
-    let mut noted: BTreeMap<_, Since> = BTreeMap::new();
+    let mut histories: BTreeMap<_, DeviationHistory> = BTreeMap::new();
     for (vessel, compass, since, level_deg) in found {
         let since: NaiveDate = since
             .parse()
             .map_err(|error: chrono::ParseError| sqlx::Error::Decode(error.into()))?;
-        noted
+        histories
             .entry((vessel, compass))
             .or_default()
             .0
             .push((since, level_deg));
     }
-    Ok(noted)
+    Ok(histories)
 }
 
-/// Notes it of a compass, in the place of what was.
-pub(super) async fn note(
+/// Stores the history of a compass, in place of the earlier one.
+pub(super) async fn store_history(
     tx: &mut Tx,
-    (vessel, compass): (VesselId, CompassId),
-    since: &Since,
+    vessel: VesselId,
+    compass: CompassId,
+    history: &DeviationHistory,
 ) -> Result<()> {
     execute!(
         &mut *tx,
@@ -76,7 +77,7 @@ pub(super) async fn note(
         vessel,
         compass
     )?;
-    for (day, level_deg) in since.levels() {
+    for (day, level_deg) in history.levels() {
         execute!(
             &mut *tx,
             "INSERT INTO deviation_since (vessel_id, compass_id, since, at_least_deg)
@@ -99,17 +100,19 @@ mod tests {
         NaiveDate::from_ymd_opt(2026, 11, of_november).unwrap()
     }
 
-    fn first_over(since: &Since, limit_deg: f64) -> Option<NaiveDate> {
+    fn first_over(since: &DeviationHistory, limit_deg: f64) -> Option<NaiveDate> {
         let mut over = since.levels().filter(|(_, deg)| *deg > limit_deg);
         over.next().map(|(day, _)| day)
     }
 
     #[test]
-    fn a_limit_is_passed_on_the_first_day_of_those_that_are_all_over_it() {
-        let looks = [(1, 4.0), (2, 6.0), (3, 5.5), (5, 7.25), (6, 5.5), (9, 6.0)];
-        let since = looks.iter().fold(Since::default(), |since, (on, deg)| {
-            since.seen(day(*on), *deg)
-        });
+    fn a_limit_is_exceeded_since_the_first_of_the_days_over_it() {
+        let observations = [(1, 4.0), (2, 6.0), (3, 5.5), (5, 7.25), (6, 5.5), (9, 6.0)];
+        let since = observations
+            .iter()
+            .fold(DeviationHistory::default(), |since, (on, deg)| {
+                since.with_observation(day(*on), *deg)
+            });
         assert_eq!(first_over(&since, 3.0), Some(day(1)));
         assert_eq!(first_over(&since, 5.0), Some(day(2)));
         assert_eq!(first_over(&since, 5.8), Some(day(9)));
@@ -117,18 +120,23 @@ mod tests {
     }
 
     #[test]
-    fn a_day_below_the_limit_begins_it_anew() {
-        let since = Since::default().seen(day(1), 6.0).seen(day(2), 4.9);
+    fn a_day_below_the_limit_restarts_the_history() {
+        let since = DeviationHistory::default()
+            .with_observation(day(1), 6.0)
+            .with_observation(day(2), 4.9);
         assert_eq!(first_over(&since, 5.0), None);
-        assert_eq!(first_over(&since.seen(day(3), 6.0), 5.0), Some(day(3)));
+        assert_eq!(
+            first_over(&since.with_observation(day(3), 6.0), 5.0),
+            Some(day(3))
+        );
     }
 
     #[test]
-    fn what_trembles_about_one_size_keeps_few_days() {
-        let trembling = (1..29).fold(Since::default(), |since, on| {
-            since.seen(day(on), 6.03 + 0.01 * f64::from(on % 5))
+    fn a_deviation_that_varies_little_keeps_few_days() {
+        let varying = (1..29).fold(DeviationHistory::default(), |since, on| {
+            since.with_observation(day(on), 6.03 + 0.01 * f64::from(on % 5))
         });
-        assert_eq!(trembling.levels().count(), 1);
-        assert_eq!(first_over(&trembling, 5.0), Some(day(1)));
+        assert_eq!(varying.levels().count(), 1);
+        assert_eq!(first_over(&varying, 5.0), Some(day(1)));
     }
 }

@@ -1,23 +1,21 @@
-//! Predicted deviation at a place and on a day.
+//! Deviation predicted at a place for a day.
 
-use super::schema::SideSchema;
 use binnacle_schedule::needs::Side;
 use chrono::NaiveDate;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// The greatest deviation at a place and on a day.
+/// Greatest deviation predicted at a place for a day.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[schema(as = DeviationAhead)]
-pub struct Ahead {
-    /// On which day.
+pub struct PredictedDeviation {
+    /// The day.
     pub on: NaiveDate,
-    /// Place: `here`, a port's name, or a canal's.
+    /// The place: `here`, a port's name, or a canal's.
     #[schema(example = "Rotterdam")]
     pub place: String,
-    /// The largest deviation on any heading, either way, degrees.
+    /// Largest size of the deviation on any heading, degrees.
     pub worst_deviation_deg: f64,
     /// Direction of the deviation.
-    #[schema(value_type = SideSchema)]
     pub side: Side,
 }

@@ -1,7 +1,7 @@
-//! Something to be told, on its way to those whom it concerns.
+//! Creation of notifications from notices.
 //!
-//! What always holds: it is written for each person in the transaction that makes it
-//! true, with when a letter is to tell of it; the list and the letters are made from that.
+//! What always holds: a notice becomes one notification for each person it concerns, in the
+//! transaction of the event itself. Each has the time at which mail is due, if any.
 
 use super::settings::Settings;
 use super::store;
@@ -15,28 +15,28 @@ use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 use futures_util::future::BoxFuture;
 
-/// Someone whom notice may concern.
+/// Person whom a notice may concern.
 struct Person {
     id: UserId,
     role: Role,
     settings: Settings,
 }
 
-/// Tells a tenant's people, but not who made the notice.
-pub(super) async fn tell(
+/// Creates the notifications of a tenant's people, except for the author of the notices.
+pub(super) async fn notify(
     tx: &mut Tx,
     tenant: impl Into<Tenant>,
-    all: &[Notice],
-    by: Option<UserId>,
+    notices: &[Notice],
+    author: Option<UserId>,
     now: Time,
 ) -> Result<()> {
-    if all.is_empty() {
+    if notices.is_empty() {
         return Ok(());
     }
-    for person in people(tx, tenant.into()).await? {
+    for person in list_people(tx, tenant.into()).await? {
         let concerns =
-            |notice: &&Notice| notice.kind.concerns(person.role) && by != Some(person.id);
-        for notice in all.iter().filter(concerns) {
+            |notice: &&Notice| notice.kind.concerns(person.role) && author != Some(person.id);
+        for notice in notices.iter().filter(concerns) {
             let way = person.settings.way(notice.kind, person.role);
             if way == Way::Off {
                 continue;
@@ -51,7 +51,7 @@ pub(super) async fn tell(
     Ok(())
 }
 
-async fn people(tx: &mut Tx, tenant: Tenant) -> Result<Vec<Person>> {
+async fn list_people(tx: &mut Tx, tenant: Tenant) -> Result<Vec<Person>> {
     let found = rows!(
         in tx,
         (UserId, Role, Option<String>),
@@ -75,7 +75,7 @@ async fn people(tx: &mut Tx, tenant: Tenant) -> Result<Vec<Person>> {
     found.into_iter().map(read).collect()
 }
 
-/// Returns whether a user is on the operator's mailing list, which gets a letter of each alert.
+/// Returns whether a user is on the operator's mailing list, which gets mail of each alert.
 async fn is_on_the_mailing_list(tx: &mut Tx, user: UserId) -> Result<bool> {
     let found = row!(
         in tx,
@@ -89,7 +89,10 @@ async fn is_on_the_mailing_list(tx: &mut Tx, user: UserId) -> Result<bool> {
 }
 
 /// Creates the notifications of published notices.
-pub fn create<'a>(tx: &'a mut Tx, published: &'a NoticesPublished) -> BoxFuture<'a, Result<()>> {
+pub fn create_notifications<'a>(
+    tx: &'a mut Tx,
+    published: &'a NoticesPublished,
+) -> BoxFuture<'a, Result<()>> {
     Box::pin(async move {
         let NoticesPublished {
             tenant,
@@ -97,6 +100,6 @@ pub fn create<'a>(tx: &'a mut Tx, published: &'a NoticesPublished) -> BoxFuture<
             by,
             at,
         } = published;
-        tell(tx, *tenant, notices, *by, *at).await
+        notify(tx, *tenant, notices, *by, *at).await
     })
 }

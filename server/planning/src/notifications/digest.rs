@@ -1,17 +1,17 @@
-//! The letter of one notification, or of several together.
+//! The letter of one notification, or the digest of several.
 
-use super::Notification;
+use super::notification::Notification;
 use binnacle_platform::error::Result;
 use binnacle_platform::mail::{Letter, LetterItem, header, one_line, wrapped};
 
-/// Notifications that a letter gives in full; further ones get a line each up to `MOST_LISTED`,
-/// and the rest are only counted.
-const MOST_IN_FULL: usize = 20;
-const MOST_LISTED: usize = 60;
+/// Maximum number of notifications in full text; further ones get a line each.
+const MAX_IN_FULL: usize = 20;
+/// Maximum number of notifications in full text or as a line; the rest are counted.
+const MAX_LISTED: usize = 60;
 
-/// The letter that tells of them, as it waits to be sent; none of none.
-pub(super) fn letter_of(told: &[Notification]) -> Option<Result<String>> {
-    let letter = match told {
+/// Returns the letter of some notifications as the outbox stores it; `None` without any.
+pub(super) fn compose_letter(notifications: &[Notification]) -> Option<Result<String>> {
+    let letter = match notifications {
         [] => return None,
         [one] => Letter {
             subject: header(&one.subject),
@@ -21,39 +21,39 @@ pub(super) fn letter_of(told: &[Notification]) -> Option<Result<String>> {
             files: None,
             about: one.alert_id.map(|id| id.0).or(one.order_id.map(|id| id.0)),
         },
-        all => together(all),
+        several => compose_digest(several),
     };
     Some(serde_json::to_string(&letter).map_err(Into::into))
 }
 
-/// The last first: what came of a thing stands before how it began.
-fn together(all: &[Notification]) -> Letter {
+/// Returns one letter of several notifications, the latest first.
+fn compose_digest(all: &[Notification]) -> Letter {
     let head = |one: &Notification| {
         let subject = one_line(&one.subject);
         format!("{subject} ({})", one.created_at.to_the_minute())
     };
-    let last_first = || all.iter().rev();
-    let told = last_first().take(MOST_IN_FULL).map(|one| LetterItem {
+    let latest_first = || all.iter().rev();
+    let in_full = latest_first().take(MAX_IN_FULL).map(|one| LetterItem {
         head: head(one),
         text: one.text.clone(),
         path: one.path.clone(),
     });
-    let in_a_line = last_first().take(MOST_LISTED).skip(MOST_IN_FULL);
-    let mut lines: Vec<String> = in_a_line.map(|one| wrapped("- ", &head(one))).collect();
-    if all.len() > MOST_LISTED {
+    let listed = latest_first().take(MAX_LISTED).skip(MAX_IN_FULL);
+    let mut lines: Vec<String> = listed.map(|one| wrapped("- ", &head(one))).collect();
+    if all.len() > MAX_LISTED {
         lines.push(String::new());
-        lines.push(format!("And {} more.", all.len() - MOST_LISTED));
+        lines.push(format!("And {} more.", all.len() - MAX_LISTED));
     }
     if !lines.is_empty() {
         lines.push(String::new());
     }
     lines.push("All of them:".to_owned());
     let urgent = all.iter().any(|one| one.urgent);
-    let first = if urgent { "Urgent: " } else { "" };
+    let prefix = if urgent { "Urgent: " } else { "" };
     Letter {
-        subject: format!("{first}{} notifications from Binnacle", all.len()),
+        subject: format!("{prefix}{} notifications from Binnacle", all.len()),
         text: lines.join("\n"),
-        items: told.collect(),
+        items: in_full.collect(),
         path: "/notifications".to_owned(),
         about: None,
         files: None,

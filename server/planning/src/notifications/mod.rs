@@ -1,24 +1,24 @@
-//! Notifications: telling each person of what concerns them, as they want to be told.
+//! Notifications for each person: list, mail and digest.
 //!
 //! What always holds:
 //!
-//! - What a person ought to know is written for that person in the transaction that makes
-//!   it true; who made it so is not told.
-//! - Mail waits for the end of a person's quiet hours, or for their digest; what is urgent
-//!   waits for neither. Letters go through [`binnacle_platform::outbox`].
-//! - A notification is its person's own: nobody else finds it.
+//! - A notification is stored in the transaction of its event. The author of the event gets none.
+//! - Mail waits for the end of a person's quiet hours, or for their digest. Urgent mail waits for
+//!   neither. Letters go through [`binnacle_platform::outbox`].
+//! - A person sees their own notifications only.
 
 mod create;
 mod digest;
 mod needs;
+mod notification;
 mod send;
 mod settings;
 mod store;
 mod way;
 
-pub use create::create;
-pub use needs::look;
-pub use send::{post, watch};
+pub use create::create_notifications;
+pub use needs::notify_of_needs;
+pub use send::{send_due, watch};
 
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
@@ -27,19 +27,20 @@ use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone};
-use binnacle_platform::ids::{AlertId, NotificationId, OrderId, VesselId};
+use binnacle_platform::ids::NotificationId;
 use binnacle_platform::notices::Kind;
 use binnacle_platform::session::Role;
 use binnacle_platform::time::Time;
+use notification::{Filter, Notification};
 use serde::{Deserialize, Serialize};
 use settings::Settings;
 use std::collections::BTreeMap;
-use utoipa::{IntoParams, ToSchema};
+use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use way::Way;
 
-/// The routes of this part.
+/// Returns the routes of this part.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -55,39 +56,6 @@ where
         ))
 }
 
-/// Something that you ought to know.
-#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
-pub struct Notification {
-    /// The notification's id.
-    pub id: NotificationId,
-    /// Kind of event.
-    pub kind: Kind,
-    /// Whether its mail skips quiet hours and digests.
-    pub urgent: bool,
-    /// In a line.
-    #[schema(example = "Nao Victoria: Nervión Compass accepts the adjustment at Bilbao")]
-    pub subject: String,
-    /// Full text, as in the letter.
-    pub text: String,
-    /// The dashboard's page to look at.
-    #[schema(example = "/work-orders/0199aa00-0000-7000-8000-000000000001")]
-    pub path: String,
-    /// The vessel.
-    #[schema(required)]
-    pub vessel_id: Option<VesselId>,
-    /// The work order, if it is of one.
-    #[schema(required)]
-    pub order_id: Option<OrderId>,
-    /// The alert, if it is of one.
-    #[schema(required)]
-    pub alert_id: Option<AlertId>,
-    /// Time of the event.
-    pub created_at: Time,
-    /// Time at which you marked it as read.
-    #[schema(required)]
-    pub read_at: Option<Time>,
-}
-
 /// A page of notifications.
 #[derive(Serialize, ToSchema)]
 struct NotificationList {
@@ -100,22 +68,12 @@ struct NotificationList {
     unread: i64,
 }
 
-/// Filter of a list of notifications.
-#[derive(Debug, Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
-struct Filter {
-    /// Only unread ones (`true`) or only read ones (`false`).
-    unread: Option<bool>,
-    /// Only of this kind.
-    kind: Option<Kind>,
-}
-
 /// Notifications to mark as read.
 #[derive(Debug, Default, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NotificationsRead)]
-struct Read {
-    /// This one and all before it; all there are if not said.
+struct NotificationsRead {
+    /// The last notification to mark; all by default.
     until: Option<NotificationId>,
 }
 
@@ -123,29 +81,29 @@ struct Read {
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = ChangedNotification)]
-struct Changed {
-    /// Whether you have read it.
+struct ChangedNotification {
+    /// `true` when you have read it.
     read: bool,
 }
 
 /// Notification settings in force.
 #[derive(Serialize, ToSchema)]
 #[schema(as = NotificationSettingsInForce)]
-struct InForce {
+struct SettingsInForce {
     /// Your settings.
     settings: Settings,
-    /// Every kind that you are told of, with the way in force.
+    /// Every kind that concerns you, with its way of delivery.
     ways: BTreeMap<Kind, Way>,
-    /// Address for mail: the one you sign in with.
+    /// Address for mail, with which you sign in.
     #[schema(example = "ada@example.com")]
     address: String,
-    /// Whether this server is set up to send mail.
+    /// `true` when this server is set up to send mail.
     sending: bool,
-    /// Time of the next digest, if there is anything in it.
+    /// Time of the next digest; an empty one is not sent.
     next_digest_at: Time,
 }
 
-/// List what you ought to know
+/// List your notifications
 ///
 /// Notifications are kept for 90 days.
 #[utoipa::path(get, path = "/notifications", tag = "notifications", params(Filter, Page),
@@ -156,31 +114,31 @@ async fn list_notifications(
     Params(filter): Params<Filter>,
     page: Page,
 ) -> Result<Json<NotificationList>> {
-    let user = told(&caller)?.user.user_id;
+    let user = require_recipient(&caller)?.user.user_id;
     let before = page.after_id()?;
     let found = store::list(&app.db, user, &filter, before, page.fetch()).await?;
     let listed = page.cut(found, |notification| notification.id.to_string());
     Ok(Json(NotificationList {
         items: listed.items,
         next: listed.next,
-        unread: store::unread(&app.db, user).await?,
+        unread: store::count_unread(&app.db, user).await?,
     }))
 }
 
 /// Mark notifications as read
 ///
-/// What is read is not told by mail any more.
+/// Notifications that have been read are not mailed any more.
 #[utoipa::path(post, path = "/notifications/read", tag = "notifications",
-    request_body = Option<Read>,
+    request_body = Option<NotificationsRead>,
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem)))]
 async fn mark_notifications_read(
     State(app): State<App>,
     request: RequestContext,
     caller: Caller,
-    ValidOrNone(read): ValidOrNone<Read>,
+    ValidOrNone(read): ValidOrNone<NotificationsRead>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
-    let user = told(&caller)?.user.user_id;
+    let user = require_recipient(&caller)?.user.user_id;
     let mut tx = request.begin().await?;
     store::mark_read(&mut tx, user, read.until, app.clock.now().into()).await?;
     tx.commit().await?;
@@ -189,7 +147,7 @@ async fn mark_notifications_read(
 
 /// Mark a notification as read or unread
 #[utoipa::path(patch, path = "/notifications/{id}", tag = "notifications",
-    params(("id" = NotificationId, Path)), request_body = Changed,
+    params(("id" = NotificationId, Path)), request_body = ChangedNotification,
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem)))]
 async fn change_notification(
@@ -197,10 +155,10 @@ async fn change_notification(
     request: RequestContext,
     caller: Caller,
     Id(id): Id<NotificationId>,
-    Valid(changed): Valid<Changed>,
+    Valid(changed): Valid<ChangedNotification>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
-    let user = told(&caller)?.user.user_id;
+    let user = require_recipient(&caller)?.user.user_id;
     let read_at = changed.read.then(|| app.clock.now().into());
     let mut tx = request.begin().await?;
     if !store::mark(&mut tx, user, id, read_at).await? {
@@ -210,55 +168,58 @@ async fn change_notification(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// See how you are told
+/// See your notification settings
 #[utoipa::path(get, path = "/me/notifications", tag = "notifications",
-    responses((status = 200, body = InForce), (status = 401, body = Problem)))]
+    responses((status = 200, body = SettingsInForce), (status = 401, body = Problem)))]
 async fn find_notification_settings(
     State(app): State<App>,
     caller: Caller,
-) -> Result<Json<InForce>> {
-    let settings = store::settings(&app.db, told(&caller)?.user.user_id).await?;
-    Ok(Json(InForce::new(&app, &caller, settings)))
+) -> Result<Json<SettingsInForce>> {
+    let settings = store::find_settings(&app.db, require_recipient(&caller)?.user.user_id).await?;
+    Ok(Json(SettingsInForce::new(&app, &caller, settings)))
 }
 
-/// Say how you want to be told
+/// Change your notification settings
 ///
-/// What waits to be mailed follows the new settings.
+/// Notifications that wait for mail follow the new settings.
 #[utoipa::path(put, path = "/me/notifications", tag = "notifications", request_body = Settings,
-    responses((status = 200, body = InForce), (status = 401, body = Problem),
+    responses((status = 200, body = SettingsInForce), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn change_notification_settings(
     State(app): State<App>,
     request: RequestContext,
     caller: Caller,
     Valid(settings): Valid<Settings>,
-) -> Result<Json<InForce>> {
+) -> Result<Json<SettingsInForce>> {
     caller.must_not_only_read()?;
-    let (user, role) = (told(&caller)?.user.user_id, caller.user.role);
+    let (user, role) = (require_recipient(&caller)?.user.user_id, caller.user.role);
     let settings = settings.checked(role)?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
     store::put_settings(&mut tx, user, &settings, now).await?;
-    for (id, kind, urgent) in store::waiting(&mut tx, user).await? {
+    for (id, kind, urgent) in store::list_waiting_for_mail(&mut tx, user).await? {
         let mail_at = settings.mail_at(settings.way(kind, role), urgent, now);
-        store::put_off(&mut tx, user, id, mail_at).await?;
+        store::reschedule_mail(&mut tx, user, id, mail_at).await?;
     }
     tx.commit().await?;
-    Ok(Json(InForce::new(&app, &caller, settings)))
+    Ok(Json(SettingsInForce::new(&app, &caller, settings)))
 }
 
-/// Refuses who is told of nothing: a platform admin has neither a fleet nor orders.
-fn told(caller: &Caller) -> Result<&Caller> {
+/// Returns the caller if they get notifications at all.
+///
+/// # Errors
+/// Fails for a platform admin, who has neither a fleet nor orders.
+fn require_recipient(caller: &Caller) -> Result<&Caller> {
     caller.party()?;
     Ok(caller)
 }
 
-impl InForce {
-    fn new(app: &App, caller: &Caller, settings: Settings) -> InForce {
+impl SettingsInForce {
+    fn new(app: &App, caller: &Caller, settings: Settings) -> SettingsInForce {
         let role: Role = caller.user.role;
-        let told = Kind::ALL.into_iter().filter(|kind| kind.concerns(role));
-        InForce {
-            ways: told.map(|kind| (kind, settings.way(kind, role))).collect(),
+        let kinds = Kind::ALL.into_iter().filter(|kind| kind.concerns(role));
+        SettingsInForce {
+            ways: kinds.map(|kind| (kind, settings.way(kind, role))).collect(),
             address: caller.user.email.clone(),
             sending: app.config.mail.is_set_up(),
             next_digest_at: settings.next_digest(app.clock.now().into()),

@@ -1,10 +1,10 @@
-//! Letters from notifications that are due: one by itself, several together.
+//! Mail of due notifications: a letter for a single one, a digest for several.
 //!
-//! What always holds: what is taken for a letter and the letter are one transaction, so
-//! that nothing is told twice or never; what was read meanwhile is not told any more.
+//! What always holds: notifications are taken and their letter queued in one transaction, so that
+//! each is mailed once. Those read in the meantime are not mailed.
 
-use super::store;
-use super::{Notification, digest, needs};
+use super::notification::Notification;
+use super::{digest, needs, store};
 use binnacle_platform::app::App;
 use binnacle_platform::db::{Tx, row};
 use binnacle_platform::error::Result;
@@ -15,60 +15,67 @@ use binnacle_platform::time::Time;
 use std::time::Duration;
 use tracing::error;
 
-/// Interval between looks for letters that are due.
-const LOOK_EVERY: Duration = Duration::from_secs(5);
-/// Looks between checks of urgent needs and of expired notifications.
-const SELDOM: u32 = 180;
+/// Interval between checks for due mail.
+const POLL_INTERVAL: Duration = Duration::from_secs(5);
+/// Checks for due mail between two checks for needs and expired notifications.
+const POLLS_PER_MAINTENANCE: u32 = 180;
 
-/// Looks after notifications until the server stops.
+/// Runs the checks until the server stops.
 pub async fn watch(app: App) {
-    let mut looks: u32 = 0;
+    let mut polls: u32 = 0;
     while !app.stopping.is_cancelled() {
-        if looks.is_multiple_of(SELDOM)
-            && let Err(error) = seldom(&app).await
+        if polls.is_multiple_of(POLLS_PER_MAINTENANCE)
+            && let Err(error) = maintain(&app).await
         {
-            error!(?error, "needs cannot be looked for");
+            error!(?error, "cannot check needs");
         }
-        looks = looks.wrapping_add(1);
-        if let Err(error) = post(&app).await {
-            error!(?error, "letters cannot be made");
+        polls = polls.wrapping_add(1);
+        if let Err(error) = send_due(&app).await {
+            error!(?error, "cannot queue mail");
         }
         tokio::select! {
             () = app.stopping.cancelled() => {}
-            () = tokio::time::sleep(LOOK_EVERY) => {}
+            () = tokio::time::sleep(POLL_INTERVAL) => {}
         }
     }
 }
 
-async fn seldom(app: &App) -> Result<()> {
-    needs::look(app).await?;
+async fn maintain(app: &App) -> Result<()> {
+    needs::notify_of_needs(app).await?;
     store::prune(&app.db, app.clock.now().into()).await?;
     Ok(())
 }
 
-/// Makes the letters that are due, and queues them; to how many people.
-pub async fn post(app: &App) -> Result<usize> {
+/// Queues the mail that is due and returns the number of people it is for.
+pub async fn send_due(app: &App) -> Result<usize> {
     let now = app.clock.now().into();
-    let due = store::due(&app.db, now).await?;
+    let due = store::list_due_people(&app.db, now).await?;
     for (user,) in &due {
         let mut tx = app.db.begin().await?;
         let taken = store::take_due(&mut tx, *user, now).await?;
         if app.config.mail.is_set_up() {
-            queue(&mut tx, *user, taken, now).await?;
+            queue_mail(&mut tx, *user, taken, now).await?;
         }
         tx.commit().await?;
     }
     Ok(due.len())
 }
 
-async fn queue(tx: &mut Tx, user: UserId, mut taken: Vec<Notification>, now: Time) -> Result<()> {
+async fn queue_mail(
+    tx: &mut Tx,
+    user: UserId,
+    mut taken: Vec<Notification>,
+    now: Time,
+) -> Result<()> {
     taken.retain(|notification| notification.read_at.is_none());
-    let Some(tenant) = tenant(tx, user).await? else {
+    let Some(tenant) = find_tenant(tx, user).await? else {
         return Ok(());
     };
-    let (urgent, others): (Vec<_>, Vec<_>) = taken.into_iter().partition(|told| told.urgent);
-    for together in [urgent, others] {
-        let Some(letter) = digest::letter_of(&together) else {
+    let (urgent, others): (Vec<_>, Vec<_>) = taken
+        .into_iter()
+        .partition(|notification| notification.urgent);
+    for notifications in [urgent, others] {
+        let Some(letter) = digest::compose_letter(&notifications) else {
             continue;
         };
         outbox::ensure(tx, tenant, user.0, Channel::Mail).await?;
@@ -83,7 +90,7 @@ async fn queue(tx: &mut Tx, user: UserId, mut taken: Vec<Notification>, now: Tim
     Ok(())
 }
 
-async fn tenant(tx: &mut Tx, user: UserId) -> Result<Option<Tenant>> {
+async fn find_tenant(tx: &mut Tx, user: UserId) -> Result<Option<Tenant>> {
     let found = row!(
         in tx,
         (Option<OperatorId>, Option<FirmId>),

@@ -25,7 +25,7 @@ use utoipa::ToSchema;
     "digest": { "every": "week", "on": "monday", "at": "07:30" }
 }))]
 pub(super) struct Settings {
-    /// The time zone by its IANA name; UTC if not said.
+    /// IANA name of the time zone; UTC by default.
     #[serde(default = "Zone::utc")]
     #[schema(value_type = String, example = "Europe/Madrid")]
     pub(super) time_zone: Zone,
@@ -50,15 +50,15 @@ pub(super) struct TimeOfDay(NaiveTime);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct QuietHours {
-    /// From then on.
+    /// Start.
     #[schema(value_type = String, example = "22:00")]
     pub(super) from: TimeOfDay,
-    /// Until then.
+    /// End.
     #[schema(value_type = String, example = "07:00")]
     pub(super) to: TimeOfDay,
 }
 
-/// Time at which a digest is sent, if there is anything in it.
+/// Time of the digest; an empty one is not sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(tag = "every", rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum Digest {
@@ -93,7 +93,7 @@ pub(super) enum Weekday {
 
 impl Default for Digest {
     fn default() -> Digest {
-        let seven = NaiveTime::from_hms_opt(7, 0, 0).expect("seven is an hour");
+        let seven = NaiveTime::from_hms_opt(7, 0, 0).expect("07:00:00 is a time of day");
         Digest::Day {
             at: TimeOfDay(seven),
         }
@@ -117,7 +117,7 @@ impl TryFrom<String> for TimeOfDay {
     fn try_from(text: String) -> std::result::Result<TimeOfDay, String> {
         let read = NaiveTime::parse_from_str(&text, "%H:%M").ok();
         let whole = read.filter(|_| text.len() == 5).map(TimeOfDay);
-        whole.ok_or_else(|| format!("{text:?} is no time of day like 07:30"))
+        whole.ok_or_else(|| format!("{text:?} is not a time of day such as 07:30"))
     }
 }
 
@@ -140,14 +140,14 @@ impl Settings {
             })
         };
         if !self.ways.keys().all(|kind| kind.concerns(role)) {
-            return invalid("ways", "has a kind that you are never told of");
+            return invalid("ways", "has a kind that does not concern you");
         }
         if let Some(quiet) = self.quiet_hours {
             if quiet.from == quiet.to {
-                return invalid("quiet_hours", "begin and end at the same time");
+                return invalid("quiet_hours", "start and end at the same time");
             }
             if quiet.contains(self.digest.at()) {
-                return invalid("digest", "comes in the quiet hours");
+                return invalid("digest", "is during the quiet hours");
             }
         }
         Ok(self)
@@ -155,12 +155,11 @@ impl Settings {
 
     /// Returns the way of delivery for a kind.
     pub(super) fn way(&self, kind: Kind, role: Role) -> Way {
-        let said = self.ways.get(&kind).copied();
-        said.unwrap_or_else(|| Way::default_for(kind, role))
+        let chosen = self.ways.get(&kind).copied();
+        chosen.unwrap_or_else(|| Way::default_for(kind, role))
     }
 
-    /// Returns the time of the letter for an event that happens now; `None` when no letter is
-    /// due.
+    /// Returns the time of the mail for an event that happens now; `None` for no mail.
     pub(super) fn mail_at(&self, way: Way, urgent: bool, now: Time) -> Option<Time> {
         match way {
             Way::Mail | Way::Digest if urgent => Some(now),
@@ -170,7 +169,7 @@ impl Settings {
         }
     }
 
-    /// Now, or when the quiet hours end.
+    /// Returns now, or the end of the current quiet hours.
     fn after_quiet_hours(&self, now: Time) -> Time {
         let local = self.local(now);
         let Some(quiet) = self.quiet_hours else {
@@ -202,8 +201,8 @@ impl Settings {
         self.time_zone.local(Instant(at.0))
     }
 
-    /// The instant at which a clock there shows a time: the first, where it does so twice;
-    /// the first after it, where it never does.
+    /// Returns the instant of a local time: the first of two when clocks go back, the next when
+    /// clocks skip it.
     fn instant(&self, day: NaiveDate, at: TimeOfDay) -> Time {
         Time(self.time_zone.instant(day.and_time(at.0)).0)
     }
@@ -249,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn quiet_hours_hold_mail_until_they_end_where_the_person_is() {
+    fn quiet_hours_hold_mail_until_they_end_in_local_time() {
         let madrid = settings(json!({
             "time_zone": "Europe/Madrid", "quiet_hours": { "from": "22:00", "to": "07:00" }
         }));
@@ -275,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_that_a_clock_skips_is_the_first_after_it() {
+    fn a_skipped_local_time_becomes_the_next() {
         let madrid = settings(json!({
             "time_zone": "Europe/Madrid", "digest": { "every": "day", "at": "02:30" }
         }));
@@ -287,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn a_digest_comes_on_its_day_and_never_now() {
+    fn a_digest_is_sent_on_its_day_and_never_now() {
         let weekly = settings(json!({
             "time_zone": "Asia/Singapore",
             "digest": { "every": "week", "on": "monday", "at": "07:30" }
@@ -305,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_not_read() {
+    fn invalid_settings_are_refused() {
         for bad in [
             json!({ "time_zone": "Europe/Atlantis" }),
             json!({ "time_zone": "UTC", "quiet_hours": { "from": "24:00", "to": "07:00" } }),

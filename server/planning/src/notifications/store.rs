@@ -1,7 +1,7 @@
-//! Notifications and people's settings in the database.
+//! Notifications, notification settings and recorded needs in the database.
 
+use super::notification::{Filter, Notification};
 use super::settings::Settings;
-use super::{Filter, Notification};
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, NotificationId, OperatorId, UserId, VesselId};
@@ -10,11 +10,11 @@ use binnacle_platform::notices::Notice;
 use binnacle_platform::time::Time;
 use uuid::Uuid;
 
-/// So long they are kept.
-const KEPT_FOR_S: f64 = 90.0 * 86_400.0;
+/// Retention of notifications, seconds.
+const RETENTION_S: f64 = 90.0 * 86_400.0;
 
 /// Returns a person's settings, or the defaults.
-pub(super) async fn settings(db: &Db, user: UserId) -> Result<Settings> {
+pub(super) async fn find_settings(db: &Db, user: UserId) -> Result<Settings> {
     let found = row!(
         db,
         (String,),
@@ -27,6 +27,7 @@ pub(super) async fn settings(db: &Db, user: UserId) -> Result<Settings> {
     )?)
 }
 
+/// Stores a person's settings.
 pub(super) async fn put_settings(
     tx: &mut Tx,
     user: UserId,
@@ -73,7 +74,7 @@ pub(super) async fn insert(
     Ok(())
 }
 
-/// The newest first, from before an id.
+/// Returns a page of notifications, the newest first, older than an id.
 pub(super) async fn list(
     db: &Db,
     user: UserId,
@@ -101,7 +102,7 @@ pub(super) async fn list(
 }
 
 /// Returns the number of a person's unread notifications.
-pub(super) async fn unread(db: &Db, user: UserId) -> DbResult<i64> {
+pub(super) async fn count_unread(db: &Db, user: UserId) -> DbResult<i64> {
     let found = row!(
         db,
         (i64,),
@@ -111,7 +112,7 @@ pub(super) async fn unread(db: &Db, user: UserId) -> DbResult<i64> {
     Ok(found.map_or(0, |(unread,)| unread))
 }
 
-/// Marks one as read, or as unread; whether there is such a one.
+/// Marks a notification as read or unread; false when the person has no such one.
 pub(super) async fn mark(
     tx: &mut Tx,
     user: UserId,
@@ -128,7 +129,7 @@ pub(super) async fn mark(
     Ok(marked > 0)
 }
 
-/// Marks those up to one as read, all if it is not said which.
+/// Marks notifications up to one as read, or all.
 pub(super) async fn mark_read(
     tx: &mut Tx,
     user: UserId,
@@ -146,8 +147,8 @@ pub(super) async fn mark_read(
     Ok(())
 }
 
-/// Returns the notifications that wait for a letter: id, kind, and whether urgent.
-pub(super) async fn waiting(
+/// Returns the notifications that wait for mail: id, kind and urgency.
+pub(super) async fn list_waiting_for_mail(
     tx: &mut Tx,
     user: UserId,
 ) -> DbResult<Vec<(NotificationId, Kind, bool)>> {
@@ -161,7 +162,8 @@ pub(super) async fn waiting(
     )
 }
 
-pub(super) async fn put_off(
+/// Changes the time of a notification's mail.
+pub(super) async fn reschedule_mail(
     tx: &mut Tx,
     user: UserId,
     id: NotificationId,
@@ -177,8 +179,8 @@ pub(super) async fn put_off(
     Ok(())
 }
 
-/// To whom a letter is due.
-pub(super) async fn due(db: &Db, now: Time) -> DbResult<Vec<(UserId,)>> {
+/// Returns the people to whom mail is due.
+pub(super) async fn list_due_people(db: &Db, now: Time) -> DbResult<Vec<(UserId,)>> {
     rows!(
         db,
         (UserId,),
@@ -187,7 +189,7 @@ pub(super) async fn due(db: &Db, now: Time) -> DbResult<Vec<(UserId,)>> {
     )
 }
 
-/// Takes what is due to a person for a letter: nobody else gets it.
+/// Takes a person's due notifications for mail; no other process gets them.
 pub(super) async fn take_due(tx: &mut Tx, user: UserId, now: Time) -> DbResult<Vec<Notification>> {
     let mut taken = rows!(
         in tx,
@@ -199,25 +201,25 @@ pub(super) async fn take_due(tx: &mut Tx, user: UserId, now: Time) -> DbResult<V
         user,
         now
     )?;
-    // RETURNING promises no order.
+    // RETURNING guarantees no order.
     taken.sort_by_key(|notification| notification.id);
     Ok(taken)
 }
 
-/// Forgets what is old.
+/// Deletes notifications past their retention.
 pub(super) async fn prune(db: &Db, now: Time) -> DbResult<()> {
     let mut tx = db.begin().await?;
     execute!(
         &mut tx,
         "DELETE FROM notifications WHERE created_at < $1",
-        Time(now.0.plus_seconds(-KEPT_FOR_S))
+        Time(now.0.plus_seconds(-RETENTION_S))
     )?;
     tx.commit().await
 }
 
 /// Last recorded state of a compass's need.
 #[derive(Clone, Debug, PartialEq, sqlx::FromRow)]
-pub(super) struct Noted {
+pub(super) struct RecordedNeed {
     pub(super) vessel_id: VesselId,
     pub(super) compass_id: CompassId,
     pub(super) due_on: String,
@@ -226,10 +228,13 @@ pub(super) struct Noted {
 }
 
 /// Returns the last recorded needs of an operator's compasses.
-pub(super) async fn needs_told(db: &Db, operator: OperatorId) -> DbResult<Vec<Noted>> {
+pub(super) async fn list_recorded_needs(
+    db: &Db,
+    operator: OperatorId,
+) -> DbResult<Vec<RecordedNeed>> {
     rows!(
         db,
-        Noted,
+        RecordedNeed,
         "SELECT t.vessel_id, t.compass_id, t.due_on, t.urgency, t.reason FROM needs_told t
          JOIN vessels v ON v.id = t.vessel_id
          WHERE v.operator_id = $1
@@ -238,25 +243,25 @@ pub(super) async fn needs_told(db: &Db, operator: OperatorId) -> DbResult<Vec<No
     )
 }
 
-/// Notes how a compass's need stands; false when another process has meanwhile.
-pub(super) async fn note_need(
+/// Records a compass's need; false when another process was faster.
+pub(super) async fn record_need(
     tx: &mut Tx,
-    before: Option<&Noted>,
-    stands: &Noted,
+    before: Option<&RecordedNeed>,
+    current: &RecordedNeed,
     now: Time,
 ) -> DbResult<bool> {
-    let noted = match before {
+    let recorded = match before {
         None => execute!(
             tx,
             "INSERT INTO needs_told (vessel_id, compass_id, due_on, urgency, reason, version,
                                      changed_at)
              VALUES ($1, $2, $3, $4, $5, 1, $6)
              ON CONFLICT (vessel_id, compass_id) DO NOTHING",
-            stands.vessel_id,
-            stands.compass_id,
-            stands.due_on.as_str(),
-            stands.urgency.as_str(),
-            stands.reason.as_str(),
+            current.vessel_id,
+            current.compass_id,
+            current.due_on.as_str(),
+            current.urgency.as_str(),
+            current.reason.as_str(),
             now
         )?,
         Some(before) => execute!(
@@ -265,27 +270,27 @@ pub(super) async fn note_need(
              SET due_on = $6, urgency = $7, reason = $8, version = version + 1, changed_at = $9
              WHERE vessel_id = $1 AND compass_id = $2
                AND due_on = $3 AND urgency = $4 AND reason = $5",
-            stands.vessel_id,
-            stands.compass_id,
+            current.vessel_id,
+            current.compass_id,
             before.due_on.as_str(),
             before.urgency.as_str(),
             before.reason.as_str(),
-            stands.due_on.as_str(),
-            stands.urgency.as_str(),
-            stands.reason.as_str(),
+            current.due_on.as_str(),
+            current.urgency.as_str(),
+            current.reason.as_str(),
             now
         )?,
     };
-    Ok(noted > 0)
+    Ok(recorded > 0)
 }
 
-/// Forgets the need of a compass that has none any more.
-pub(super) async fn forget_need(tx: &mut Tx, of: &Noted) -> DbResult<()> {
+/// Deletes the recorded need of a compass that has none any more.
+pub(super) async fn delete_recorded_need(tx: &mut Tx, ended: &RecordedNeed) -> DbResult<()> {
     execute!(
         tx,
         "DELETE FROM needs_told WHERE vessel_id = $1 AND compass_id = $2",
-        of.vessel_id,
-        of.compass_id
+        ended.vessel_id,
+        ended.compass_id
     )?;
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Ways in which a person gets notifications of a kind.
+//! Ways of delivery of a notification.
 
 use binnacle_platform::notices::Kind;
 use binnacle_platform::session::Role;
@@ -10,7 +10,7 @@ use utoipa::ToSchema;
 #[serde(rename_all = "snake_case")]
 #[schema(as = NotificationWay)]
 pub(super) enum Way {
-    /// On the list, and by mail, after quiet hours if it comes during them.
+    /// On the list, and by mail, held until quiet hours end.
     Mail,
     /// On the list, and with the next digest.
     Digest,
@@ -21,8 +21,8 @@ pub(super) enum Way {
 }
 
 impl Way {
-    /// Returns the way for a kind of a person who has not chosen one. Alerts have the
-    /// operator's mailing list, and a viewer gets no mail unasked.
+    /// Returns the default way of a kind. Alerts have the operator's mailing list, and a viewer
+    /// gets no mail by default.
     pub(super) fn default_for(kind: Kind, role: Role) -> Way {
         match (role, kind) {
             (Role::Viewer, _) | (_, Kind::Alert) => Way::List,

@@ -1,4 +1,4 @@
-//! A port call, as it is asked for, written and shown.
+//! A port call: requests, content and API types.
 
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::http::{Amended, never_null, optional_text, text, time};
@@ -10,7 +10,7 @@ use binnacle_schedule::time::Instant;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
-/// A call to be entered.
+/// Port call to enter.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NewPortCall, example = json!({
@@ -30,65 +30,58 @@ pub(super) struct NewCall {
     /// Expected arrival alongside, with a time zone.
     #[schema(value_type = Time)]
     pub(super) eta: Instant,
-    /// She comes within so many hours of that, nineteen times in twenty.
+    /// Uncertainty of the arrival, hours: 95 % of arrivals lie within it.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 720)]
     pub(super) eta_uncertainty_h: f64,
-    /// Expected departure, 120 days later at most.
+    /// Expected departure, at most 120 days after arrival.
     #[schema(value_type = Time)]
     pub(super) etd: Instant,
-    /// She leaves within so many hours of that, nineteen times in twenty.
+    /// Uncertainty of the departure, hours: 95 % of departures lie within it.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 720)]
     pub(super) etd_uncertainty_h: f64,
-    /// Her true heading alongside, where it is known.
+    /// True heading of the vessel alongside, where known.
     #[schema(minimum = 0, maximum = 360)]
     pub(super) berth_heading_deg: Option<f64>,
 }
 
-/// Changes to a port call.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Amendment {
-    #[serde(default, deserialize_with = "never_null")]
-    port: Option<PortCode>,
-    #[serde(default)]
-    berth: Amended<String>,
-    #[serde(default, deserialize_with = "never_null")]
-    eta: Option<Instant>,
-    #[serde(default, deserialize_with = "never_null")]
-    eta_uncertainty_h: Option<f64>,
-    #[serde(default, deserialize_with = "never_null")]
-    etd: Option<Instant>,
-    #[serde(default, deserialize_with = "never_null")]
-    etd_uncertainty_h: Option<f64>,
-    #[serde(default)]
-    berth_heading_deg: Amended<f64>,
-}
-
 /// Changes to a port call. A field that is left out stays; null removes the berth or the heading
 /// there.
-#[derive(ToSchema)]
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
 #[schema(as = PortCallAmendment, example = json!({
     "eta": "2026-12-09T02:00:00Z", "etd": "2026-12-11T12:00:00Z"
 }))]
-#[allow(dead_code, reason = "describes Amendment")]
-pub(super) struct AmendmentSchema {
-    /// UN/LOCODE.
-    #[schema(nullable = false)]
-    port: Option<String>,
-    #[schema(max_length = 200)]
-    berth: Option<String>,
-    #[schema(nullable = false)]
-    eta: Option<Time>,
+pub(super) struct Amendment {
+    /// UN/LOCODE of the port.
+    #[serde(default, deserialize_with = "never_null")]
+    #[schema(value_type = Option<String>, nullable = false)]
+    port: Option<PortCode>,
+    /// Berth.
+    #[serde(default)]
+    #[schema(value_type = Option<String>, max_length = 200)]
+    berth: Amended<String>,
+    /// Expected arrival alongside, with a time zone.
+    #[serde(default, deserialize_with = "never_null")]
+    #[schema(value_type = Option<Time>, nullable = false)]
+    eta: Option<Instant>,
+    /// Half-width of the 95 % interval of the arrival, hours.
+    #[serde(default, deserialize_with = "never_null")]
     #[schema(minimum = 0, maximum = 720, nullable = false)]
     eta_uncertainty_h: Option<f64>,
-    #[schema(nullable = false)]
-    etd: Option<Time>,
+    /// Expected departure, with a time zone.
+    #[serde(default, deserialize_with = "never_null")]
+    #[schema(value_type = Option<Time>, nullable = false)]
+    etd: Option<Instant>,
+    /// Half-width of the 95 % interval of the departure, hours.
+    #[serde(default, deserialize_with = "never_null")]
     #[schema(minimum = 0, maximum = 720, nullable = false)]
     etd_uncertainty_h: Option<f64>,
-    #[schema(minimum = 0, maximum = 360)]
-    berth_heading_deg: Option<f64>,
+    /// True heading alongside, degrees.
+    #[serde(default)]
+    #[schema(value_type = Option<f64>, minimum = 0, maximum = 360)]
+    berth_heading_deg: Amended<f64>,
 }
 
 /// Content of a port call, whatever its source.
@@ -105,13 +98,13 @@ pub struct Content {
     pub berth: Option<String>,
     /// Expected arrival alongside.
     pub eta: Time,
-    /// She comes within so many hours of that, nineteen times in twenty.
+    /// Uncertainty of the arrival, hours: 95 % of arrivals lie within it.
     pub eta_uncertainty_h: f64,
     /// Expected departure.
     pub etd: Time,
-    /// She leaves within so many hours of that, nineteen times in twenty.
+    /// Uncertainty of the departure, hours: 95 % of departures lie within it.
     pub etd_uncertainty_h: f64,
-    /// Her true heading alongside, as it was given.
+    /// True heading of the vessel alongside, as given.
     #[schema(required)]
     pub berth_heading_deg: Option<f64>,
 }
@@ -122,7 +115,7 @@ pub struct Content {
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = PortCallSource)]
 pub enum Source {
-    /// A request of its own.
+    /// A single request.
     Api,
     /// A CSV file.
     Csv,
@@ -130,26 +123,26 @@ pub enum Source {
     Icalendar,
 }
 
-/// A vessel's call at a port.
+/// Port call of a vessel.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct PortCall {
     /// The call's id.
     pub id: CallId,
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Name of the vessel.
     pub vessel_name: String,
     /// Content of the call.
     #[serde(flatten)]
     pub content: Content,
-    /// The port's name.
+    /// Name of the port.
     pub port_name: &'static str,
-    /// Her heading alongside, given or learnt; none where neither tells.
+    /// Heading of the vessel alongside, given or learnt; `null` when unknown.
     #[schema(required)]
-    pub berth_heading: Option<LearntHeading>,
+    pub berth_heading: Option<CallBerthHeading>,
     /// Current source of the call.
     pub source: Source,
-    /// Counts from 1.
+    /// Number of the revision, from 1.
     pub revision: u32,
     /// Time of entry.
     pub created_at: Time,
@@ -161,13 +154,13 @@ pub struct PortCall {
     /// Author of the last amendment.
     #[schema(required)]
     pub revised_by: Option<String>,
-    /// Time of withdrawal, after which the call counts no more.
+    /// Time of withdrawal, from which the call no longer counts.
     #[schema(required)]
     pub withdrawn_at: Option<Time>,
     /// Name of the person who withdrew it.
     #[schema(required)]
     pub withdrawn_by: Option<String>,
-    /// Reason.
+    /// Reason of the withdrawal.
     #[schema(required)]
     pub withdrawal_reason: Option<String>,
 }
@@ -175,21 +168,21 @@ pub struct PortCall {
 /// A heading alongside.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 #[schema(as = CallBerthHeading)]
-pub struct LearntHeading {
+pub struct CallBerthHeading {
     /// Degrees, true.
     pub heading_deg: f64,
     /// Source of the heading.
-    pub source: LearntFrom,
+    pub source: CallBerthHeadingSource,
 }
 
 /// Source of a heading alongside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = CallBerthHeadingSource)]
-pub enum LearntFrom {
-    /// It was given for this call.
+pub enum CallBerthHeadingSource {
+    /// Given for this call.
     Given,
-    /// It was read alongside, in this call.
+    /// Read alongside during this call.
     Read,
     /// From earlier calls of the fleet at the same berth.
     Berth,
@@ -201,29 +194,29 @@ pub enum LearntFrom {
 #[derive(Serialize, ToSchema)]
 #[schema(as = PortCallList)]
 pub(super) struct CallList {
-    /// The first to begin comes first.
+    /// Calls, the earliest arrival first.
     pub(super) items: Vec<PortCall>,
     /// `after` of the next page.
     #[schema(required)]
     pub(super) next: Option<String>,
 }
 
-/// A call as it is, and as it was.
+/// Port call with its revisions.
 #[derive(Serialize, ToSchema)]
 #[schema(as = RevisedPortCall)]
 pub(super) struct RevisedCall {
-    /// As it is.
+    /// Current call.
     #[serde(flatten)]
     pub(super) call: PortCall,
-    /// As it was written each time, the first time first.
+    /// Revisions, the first one first.
     pub(super) revisions: Vec<Revision>,
 }
 
-/// A call as it was written once.
+/// Revision of a call.
 #[derive(Serialize, ToSchema)]
 #[schema(as = PortCallRevision)]
 pub(super) struct Revision {
-    /// Counts from 1.
+    /// Number of the revision, from 1.
     pub(super) number: u32,
     /// Time of the revision.
     pub(super) at: Time,
@@ -240,7 +233,7 @@ pub(super) struct Revision {
 #[serde(deny_unknown_fields)]
 #[schema(as = PortCallWithdrawal, example = json!({ "reason": "Charter cancelled" }))]
 pub(super) struct Withdrawal {
-    /// In a few words.
+    /// The reason, in a few words.
     #[schema(max_length = 200)]
     pub(super) reason: Option<String>,
 }
@@ -255,9 +248,9 @@ pub(super) struct Filter {
     /// Only calls that begin before this instant, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]
     to: Option<String>,
-    /// At this port only, UN/LOCODE.
+    /// Only calls at this port, UN/LOCODE.
     port: Option<String>,
-    /// Whether to list withdrawn calls too; by default they are left out.
+    /// `true` to list withdrawn calls too; by default they are left out.
     withdrawn: Option<bool>,
 }
 
@@ -270,11 +263,11 @@ pub(super) struct CheckedFilter {
 }
 
 impl NewCall {
-    /// The call, if it can be one at this time.
+    /// Returns the content of the call, if it is valid at this time.
     pub(super) fn checked(self, now: Time) -> Result<Content> {
-        let named = optional_text("reference", self.reference.as_deref())?;
+        let reference = optional_text("reference", self.reference.as_deref())?;
         let content = Content {
-            reference: named.unwrap_or_else(|| format!("{} {}", self.port, self.eta)),
+            reference: reference.unwrap_or_else(|| format!("{} {}", self.port, self.eta)),
             port: self.port,
             berth: self.berth,
             eta: Time(self.eta.0),
@@ -284,35 +277,34 @@ impl NewCall {
             berth_heading_deg: self.berth_heading_deg,
         };
         content
-            .of("", "")
-            .must_be_near(Instant(now.0))
-            .map_err(invalid_call)?;
+            .to_schedule_call("", "")
+            .check_horizon(Instant(now.0))
+            .map_err(refuse_call)?;
         content.checked(now)
     }
 }
 
 impl Amendment {
-    /// The call with what is to be changed. One that is over may be corrected, as long
-    /// as its times stay.
-    pub(super) fn applied_to(self, was: &Content, now: Time) -> Result<Content> {
+    /// Returns the content with the changes. A past call may be corrected if its times stay.
+    pub(super) fn applied_to(self, before: &Content, now: Time) -> Result<Content> {
         let content = Content {
-            reference: was.reference.clone(),
-            port: self.port.unwrap_or(was.port),
-            berth: self.berth.over(was.berth.clone()),
-            eta: self.eta.map_or(was.eta, |eta| Time(eta.0)),
-            eta_uncertainty_h: self.eta_uncertainty_h.unwrap_or(was.eta_uncertainty_h),
-            etd: self.etd.map_or(was.etd, |etd| Time(etd.0)),
-            etd_uncertainty_h: self.etd_uncertainty_h.unwrap_or(was.etd_uncertainty_h),
-            berth_heading_deg: self.berth_heading_deg.over(was.berth_heading_deg),
+            reference: before.reference.clone(),
+            port: self.port.unwrap_or(before.port),
+            berth: self.berth.over(before.berth.clone()),
+            eta: self.eta.map_or(before.eta, |eta| Time(eta.0)),
+            eta_uncertainty_h: self.eta_uncertainty_h.unwrap_or(before.eta_uncertainty_h),
+            etd: self.etd.map_or(before.etd, |etd| Time(etd.0)),
+            etd_uncertainty_h: self.etd_uncertainty_h.unwrap_or(before.etd_uncertainty_h),
+            berth_heading_deg: self.berth_heading_deg.over(before.berth_heading_deg),
         };
-        let times_stay = (content.eta, content.etd) == (was.eta, was.etd);
+        let times_stay = (content.eta, content.etd) == (before.eta, before.etd);
         if !times_stay {
             content
-                .of("", "")
-                .must_be_near(Instant(now.0))
-                .map_err(invalid_call)?;
+                .to_schedule_call("", "")
+                .check_horizon(Instant(now.0))
+                .map_err(refuse_call)?;
         }
-        content.checked(if times_stay { was.eta } else { now })
+        content.checked(if times_stay { before.eta } else { now })
     }
 }
 
@@ -324,17 +316,17 @@ impl Content {
         if ports::find(self.port).is_none() {
             return Err(Error::Invalid {
                 field: "port",
-                detail: ports::unknown(self.port),
+                detail: ports::describe_unknown(self.port),
             });
         }
-        self.of("", "")
+        self.to_schedule_call("", "")
             .checked(Instant(now.0))
-            .map_err(invalid_call)?;
+            .map_err(refuse_call)?;
         Ok(self)
     }
 
-    /// As the schedule has it.
-    pub fn of(&self, id: &str, vessel: &str) -> calls::PortCall {
+    /// Returns the call as the schedule represents it.
+    pub fn to_schedule_call(&self, id: &str, vessel: &str) -> calls::PortCall {
         calls::PortCall {
             id: id.to_owned(),
             name: None,
@@ -349,7 +341,7 @@ impl Content {
         }
     }
 
-    /// As a file had it.
+    /// Returns the content of a call from a file.
     pub(super) fn from_file(call: calls::PortCall) -> Content {
         Content {
             reference: call.id,
@@ -365,7 +357,7 @@ impl Content {
 }
 
 impl PortCall {
-    /// `after` of a page that begins behind it.
+    /// Returns the cursor of the page after this call.
     pub(super) fn cursor(&self) -> String {
         format!("{}.{}", self.content.eta.0.micros(), self.id)
     }
@@ -386,22 +378,22 @@ impl Filter {
     }
 }
 
-/// Refusal of a port call that cannot be.
-pub(super) fn invalid_call(error: CallError) -> Error {
+/// Returns the refusal of an invalid port call.
+pub(super) fn refuse_call(error: CallError) -> Error {
     Error::Invalid {
         field: error.field,
         detail: error.detail,
     }
 }
 
-impl From<BerthHeading> for LearntHeading {
-    fn from(learnt: BerthHeading) -> LearntHeading {
-        LearntHeading {
+impl From<BerthHeading> for CallBerthHeading {
+    fn from(learnt: BerthHeading) -> CallBerthHeading {
+        CallBerthHeading {
             heading_deg: learnt.heading_deg,
             source: match learnt.source {
-                HeadingSource::Given => LearntFrom::Given,
-                HeadingSource::Berth => LearntFrom::Berth,
-                HeadingSource::Port => LearntFrom::Port,
+                HeadingSource::Given => CallBerthHeadingSource::Given,
+                HeadingSource::Berth => CallBerthHeadingSource::Berth,
+                HeadingSource::Port => CallBerthHeadingSource::Port,
             },
         }
     }

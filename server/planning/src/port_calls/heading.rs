@@ -1,8 +1,8 @@
 //! Heading of a vessel at a berth: given, read alongside, or learnt from earlier calls.
 //!
-//! What always holds: an operator learns from its own fleet's calls only.
+//! What always holds: headings are learnt from calls of the operator's own fleet only.
 
-use super::call::{Content, LearntFrom, LearntHeading};
+use super::call::{CallBerthHeading, CallBerthHeadingSource, Content};
 use anyhow::Context;
 use binnacle_platform::db::{Db, rows};
 use binnacle_platform::error::Result;
@@ -11,15 +11,15 @@ use binnacle_platform::time::Time;
 use binnacle_schedule::calls::{Observed, berth_heading};
 use binnacle_schedule::ports::PortCode;
 
-/// Quays stay where they are; of more calls than this the latest tell enough.
-const MOST: i64 = 2000;
+/// Maximum number of earlier calls to learn from, the latest.
+const MAX_CALLS: i64 = 2000;
 
-/// The headings of the fleet's earlier calls.
-pub struct Earlier(Vec<Observed>);
+/// Headings of a fleet's earlier calls.
+pub struct EarlierHeadings(Vec<Observed>);
 
-impl Earlier {
-    /// Of calls that have begun and whose heading is known.
-    pub async fn of_fleet(db: &Db, operator: OperatorId, now: Time) -> Result<Earlier> {
+impl EarlierHeadings {
+    /// Loads the known headings of a fleet's calls that have begun.
+    pub async fn of_fleet(db: &Db, operator: OperatorId, now: Time) -> Result<EarlierHeadings> {
         let found = rows!(
             db,
             (String, Option<String>, f64),
@@ -31,28 +31,32 @@ impl Earlier {
              LIMIT $3",
             operator,
             now,
-            MOST
+            MAX_CALLS
         )?;
         let read = |(port, berth, heading_deg): (String, Option<String>, f64)| {
             Ok(Observed {
-                port: PortCode::parse(&port).context("a stored port")?,
+                port: PortCode::parse(&port).context("stored port")?,
                 berth,
                 heading_deg,
             })
         };
         let observed: Result<Vec<Observed>> = found.into_iter().map(read).collect();
-        Ok(Earlier(observed?))
+        Ok(EarlierHeadings(observed?))
     }
 }
 
-/// Returns the heading of the vessel alongside; one read there takes precedence over a given one.
-pub fn heading(call: &Content, lay_deg: Option<f64>, earlier: &Earlier) -> Option<LearntHeading> {
+/// Returns the heading of the vessel alongside. A reading there takes precedence over a given one.
+pub fn heading_alongside(
+    call: &Content,
+    lay_deg: Option<f64>,
+    earlier: &EarlierHeadings,
+) -> Option<CallBerthHeading> {
     if let Some(heading_deg) = lay_deg {
-        let source = LearntFrom::Read;
-        return Some(LearntHeading {
+        let source = CallBerthHeadingSource::Read;
+        return Some(CallBerthHeading {
             heading_deg,
             source,
         });
     }
-    berth_heading(&call.of("", ""), &earlier.0).map(LearntHeading::from)
+    berth_heading(&call.to_schedule_call("", ""), &earlier.0).map(CallBerthHeading::from)
 }

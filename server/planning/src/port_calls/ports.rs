@@ -12,8 +12,10 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+/// Number of results by default.
 const DEFAULT_LIMIT: usize = 20;
-const MOST: usize = 100;
+/// Maximum number of results, and of characters in a query.
+const MAX: usize = 100;
 
 pub(super) fn router<S>() -> OpenApiRouter<S>
 where
@@ -23,7 +25,7 @@ where
     OpenApiRouter::new().routes(routes!(search_ports))
 }
 
-/// Search for a port.
+/// Query of a search for ports.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Search {
@@ -38,42 +40,42 @@ struct Search {
 /// A sea port.
 #[derive(Serialize, ToSchema)]
 struct Port {
-    /// Its UN/LOCODE.
+    /// UN/LOCODE of the port.
     #[schema(value_type = String, example = "NLRTM")]
     code: PortCode,
-    /// Its name.
+    /// Name of the port.
     #[schema(example = "Rotterdam")]
     name: &'static str,
-    /// About where it is, degrees north: not for navigation.
+    /// Approximate latitude, degrees north; not for navigation.
     lat: f64,
-    /// Degrees east.
+    /// Approximate longitude, degrees east.
     lon: f64,
-    /// Its legal time, by the zone's name in the IANA time zone database.
+    /// Time zone of the port, IANA name.
     #[schema(value_type = String, example = "Europe/Amsterdam")]
     zone: Zone,
 }
 
-/// Ports found.
+/// Result of a search.
 #[derive(Serialize, ToSchema)]
 struct PortList {
-    /// Ports that begin with the text come first.
+    /// Ports; those whose name begins with the text come first.
     items: Vec<Port>,
 }
 
 /// Search for ports
 ///
-/// From UNECE's list of UN/LOCODEs; names are found with and without accents.
+/// Ports are those of UNECE's list of UN/LOCODEs. Accents do not matter.
 #[utoipa::path(get, path = "/ports", tag = "adjusting", params(Search),
     responses((status = 200, body = PortList), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn search_ports(_: PartyReader, Params(search): Params<Search>) -> Result<Json<PortList>> {
-    if search.q.chars().count() > MOST {
+    if search.q.chars().count() > MAX {
         return Err(Error::Invalid {
             field: "q",
-            detail: format!("is longer than {MOST} characters"),
+            detail: format!("is longer than {MAX} characters"),
         });
     }
-    let limit = search.limit.unwrap_or(DEFAULT_LIMIT).clamp(1, MOST);
+    let limit = search.limit.unwrap_or(DEFAULT_LIMIT).clamp(1, MAX);
     let items = ports::search(&search.q, limit)
         .into_iter()
         .map(|port| Port {

@@ -1,7 +1,7 @@
 //! Port calls in the database.
 
 use super::call::{CheckedFilter, Content, PortCall, Revision, Source};
-use super::heading::{Earlier, heading};
+use super::heading::{EarlierHeadings, heading_alongside};
 use anyhow::Context;
 use binnacle_orders::work_orders::Alongside;
 use binnacle_platform::db::{Db, Tx, execute, row, rows};
@@ -15,7 +15,7 @@ use uuid::Uuid;
 /// A call's columns, with its vessel's name.
 #[derive(Clone, Debug, sqlx::FromRow)]
 #[allow(missing_docs, reason = "they are the columns")]
-pub struct Row {
+pub struct StoredCall {
     pub vessel_id: VesselId,
     pub vessel_name: String,
     pub id: CallId,
@@ -53,15 +53,15 @@ impl Author {
     }
 }
 
-impl Row {
+impl StoredCall {
     /// Returns the content of the call.
     ///
     /// # Errors
-    /// Fails when the port is no code, which was checked before it was stored.
+    /// Fails when the stored port is not a UN/LOCODE.
     pub fn content(&self) -> Result<Content> {
         Ok(Content {
             reference: self.reference.clone(),
-            port: PortCode::parse(&self.port).context("a stored port")?,
+            port: PortCode::parse(&self.port).context("stored port")?,
             berth: self.berth.clone(),
             eta: self.eta,
             eta_uncertainty_h: self.eta_uncertainty_h,
@@ -74,23 +74,23 @@ impl Row {
     /// Returns the port and times of the call, as a work order uses them.
     ///
     /// # Errors
-    /// As [`Row::content`].
+    /// As [`StoredCall::content`].
     pub fn alongside(&self) -> Result<Alongside> {
-        let port = PortCode::parse(&self.port).context("a stored port")?;
+        let port = PortCode::parse(&self.port).context("stored port")?;
         Ok(Alongside::new(port, self.eta, self.etd))
     }
 
-    pub(super) fn shown(self, earlier: &Earlier) -> Result<PortCall> {
+    pub(super) fn into_call(self, earlier: &EarlierHeadings) -> Result<PortCall> {
         let content = self.content()?;
         Ok(PortCall {
-            berth_heading: heading(&content, self.lay_heading_deg, earlier),
+            berth_heading: heading_alongside(&content, self.lay_heading_deg, earlier),
             port_name: ports::find(content.port).map_or("", |port| port.name),
             content,
             id: self.id,
             vessel_id: self.vessel_id,
             vessel_name: self.vessel_name,
             source: self.source,
-            revision: u32::try_from(self.revision).context("a revision")?,
+            revision: u32::try_from(self.revision).context("revision number")?,
             created_at: self.created_at,
             created_by: self.created_by,
             revised_at: self.revised_at,
@@ -102,19 +102,19 @@ impl Row {
     }
 }
 
-/// Calls of the fleet in service, or of one vessel, in order of time.
+/// Returns a page of the calls of the fleet in service or of one vessel, in order of time.
 pub(super) async fn list(
     db: &Db,
     operator: OperatorId,
     vessel: Option<VesselId>,
     filter: &CheckedFilter,
-    after: Option<(i64, Uuid)>,
+    after: i64,
+    after_id: Uuid,
     limit: i64,
-) -> Result<Vec<Row>> {
-    let (after, after_id) = after.unwrap_or((i64::MIN, Uuid::nil()));
+) -> Result<Vec<StoredCall>> {
     Ok(rows!(
         db,
-        Row,
+        StoredCall,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
          WHERE v.operator_id = $1
@@ -137,11 +137,15 @@ pub(super) async fn list(
     )?)
 }
 
-/// The calls of the fleet in service that are not over and not withdrawn, by vessel and time.
-pub async fn ahead(db: &Db, operator: OperatorId, now: Time) -> Result<Vec<Row>> {
+/// Returns the current and future calls of the fleet in service, in order of vessel and time.
+pub async fn upcoming_of_fleet(
+    db: &Db,
+    operator: OperatorId,
+    now: Time,
+) -> Result<Vec<StoredCall>> {
     Ok(rows!(
         db,
-        Row,
+        StoredCall,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
          WHERE v.operator_id = $1 AND v.out_of_service_at IS NULL
@@ -153,10 +157,14 @@ pub async fn ahead(db: &Db, operator: OperatorId, now: Time) -> Result<Vec<Row>>
 }
 
 /// Returns the current and future calls of one vessel.
-pub(super) async fn ahead_of(db: &Db, vessel: VesselId, now: Time) -> Result<Vec<Row>> {
+pub(super) async fn upcoming_of_vessel(
+    db: &Db,
+    vessel: VesselId,
+    now: Time,
+) -> Result<Vec<StoredCall>> {
     Ok(rows!(
         db,
-        Row,
+        StoredCall,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
          WHERE c.vessel_id = $1 AND c.etd > $2 AND c.withdrawn_at IS NULL
@@ -166,14 +174,14 @@ pub(super) async fn ahead_of(db: &Db, vessel: VesselId, now: Time) -> Result<Vec
     )?)
 }
 
-/// A call of the vessel's.
+/// Returns a call of the vessel.
 ///
 /// # Errors
-/// [`Error::NotFound`] when it has no such call.
-pub(super) async fn must_find(db: &Db, vessel: VesselId, id: CallId) -> Result<Row> {
+/// Fails with [`Error::NotFound`] when the vessel has no such call.
+pub(super) async fn must_find(db: &Db, vessel: VesselId, id: CallId) -> Result<StoredCall> {
     row!(
         db,
-        Row,
+        StoredCall,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
          WHERE c.vessel_id = $1 AND c.id = $2
@@ -184,23 +192,27 @@ pub(super) async fn must_find(db: &Db, vessel: VesselId, id: CallId) -> Result<R
     .ok_or(Error::NotFound("port call"))
 }
 
-/// All that was ever entered of a vessel, to be changed: others who would change it wait.
+/// Locks a vessel's calls and returns them all, withdrawn ones included.
 ///
 /// # Errors
-/// [`Error::NotFound`] when she does not exist or is another operator's.
-pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, vessel: VesselId) -> Result<Vec<Row>> {
-    let held = execute!(
+/// Fails with [`Error::NotFound`] when the vessel is not in the operator's fleet.
+pub(super) async fn lock(
+    tx: &mut Tx,
+    operator: OperatorId,
+    vessel: VesselId,
+) -> Result<Vec<StoredCall>> {
+    let locked = execute!(
         &mut *tx,
         "UPDATE vessels SET name = name WHERE id = $2 AND operator_id = $1",
         operator,
         vessel
     )?;
-    if held == 0 {
+    if locked == 0 {
         return Err(Error::NotFound("vessel"));
     }
     Ok(rows!(
         in tx,
-        Row,
+        StoredCall,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
          WHERE c.vessel_id = $1
@@ -237,18 +249,18 @@ pub(super) async fn insert(
         author.at,
         author.name.as_str()
     )?;
-    keep(tx, vessel, id, 1, call, source, author).await
+    insert_revision(tx, vessel, id, 1, call, source, author).await
 }
 
-/// Writes a call anew; one that was withdrawn counts again.
+/// Stores a new revision of a call; a withdrawn call counts again.
 pub(super) async fn revise(
     tx: &mut Tx,
-    was: &Row,
+    before: &StoredCall,
     call: &Content,
     source: Source,
     author: &Author,
 ) -> Result<()> {
-    let revision = was.revision + 1;
+    let revision = before.revision + 1;
     execute!(
         &mut *tx,
         "UPDATE port_calls
@@ -257,8 +269,8 @@ pub(super) async fn revise(
              revised_at = $12, revised_by = $13, withdrawn_at = NULL, withdrawn_by = NULL,
              withdrawal_reason = NULL
          WHERE vessel_id = $1 AND id = $2",
-        was.vessel_id,
-        was.id,
+        before.vessel_id,
+        before.id,
         call.port.to_string(),
         call.berth.as_deref(),
         call.eta,
@@ -271,10 +283,19 @@ pub(super) async fn revise(
         author.at,
         author.name.as_str()
     )?;
-    keep(tx, was.vessel_id, was.id, revision, call, source, author).await
+    insert_revision(
+        tx,
+        before.vessel_id,
+        before.id,
+        revision,
+        call,
+        source,
+        author,
+    )
+    .await
 }
 
-async fn keep(
+async fn insert_revision(
     tx: &mut Tx,
     vessel: VesselId,
     id: CallId,
@@ -303,7 +324,7 @@ async fn keep(
 /// Marks a call as withdrawn.
 pub(super) async fn withdraw(
     tx: &mut Tx,
-    call: &Row,
+    call: &StoredCall,
     reason: Option<&str>,
     author: &Author,
 ) -> Result<()> {
@@ -320,7 +341,7 @@ pub(super) async fn withdraw(
     Ok(())
 }
 
-/// As a call was written each time.
+/// Returns the revisions of a call.
 pub(super) async fn revisions(db: &Db, vessel: VesselId, id: CallId) -> Result<Vec<Revision>> {
     let found = rows!(
         db,
@@ -333,7 +354,7 @@ pub(super) async fn revisions(db: &Db, vessel: VesselId, id: CallId) -> Result<V
     )?;
     let read = |(number, at, source, author_name, call): (i64, Time, Source, String, String)| {
         Ok(Revision {
-            number: u32::try_from(number).context("a revision")?,
+            number: u32::try_from(number).context("revision number")?,
             at,
             source,
             author_name,
@@ -343,7 +364,7 @@ pub(super) async fn revisions(db: &Db, vessel: VesselId, id: CallId) -> Result<V
     found.into_iter().map(read).collect()
 }
 
-/// Notes how she lies in the call that she is in, as it was read alongside.
+/// Stores the heading alongside that was read during the vessel's current call.
 pub(super) async fn set_lay_heading(
     tx: &mut Tx,
     vessel: VesselId,

@@ -1,4 +1,4 @@
-//! Handler of events that port calls learn from.
+//! Handler of headings read alongside.
 
 use super::store;
 use binnacle_orders::berth_session::BerthHeadingRead;
@@ -6,7 +6,7 @@ use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
 use futures_util::future::BoxFuture;
 
-/// Notes how a vessel lies in the call that it is in, as it was read alongside.
+/// Stores a heading read alongside with the vessel's current call.
 pub fn note_berth_heading<'a>(
     tx: &'a mut Tx,
     read: &'a BerthHeadingRead,

@@ -1,15 +1,41 @@
-//! A report's tables as CSV: named as in JSON, a line for each compass or job.
+//! Tables of a report as CSV: columns named as in JSON, a line for each compass or job.
 
-use super::Table;
-use super::report::{DueCompass, Job, Report, WorstDeviation};
+use super::report::{DueCompass, Job, Report, Saving, WorstDeviation};
 use binnacle_platform::error::{Error, Result};
+use serde::Deserialize;
 use serde_json::Value;
+use utoipa::ToSchema;
 
 /// First characters by which a spreadsheet recognises a formula.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
-/// One of a report's tables.
-pub(super) fn table(report: &Report, table: Table) -> Result<String> {
+/// Table of a report.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = ReportTable)]
+pub(super) enum Table {
+    /// Due dates of the compasses, the earliest first.
+    #[default]
+    Due,
+    /// Greatest deviation of each compass, the largest first.
+    Deviation,
+    /// Completed jobs.
+    Jobs,
+}
+
+impl Table {
+    /// Returns the name of the table, for a file.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Table::Due => "due",
+            Table::Deviation => "deviation",
+            Table::Jobs => "jobs",
+        }
+    }
+}
+
+/// Returns a table of a report as CSV.
+pub(super) fn render_table(report: &Report, table: Table) -> Result<String> {
     match table {
         Table::Due => {
             let columns = [
@@ -26,7 +52,7 @@ pub(super) fn table(report: &Report, table: Table) -> Result<String> {
                 "vessel_id",
                 "compass_id",
             ];
-            written(&columns, report.due.iter().map(due))
+            write_rows(&columns, report.due.iter().map(due_row))
         }
         Table::Deviation => {
             let columns = [
@@ -39,7 +65,7 @@ pub(super) fn table(report: &Report, table: Table) -> Result<String> {
                 "vessel_id",
                 "compass_id",
             ];
-            written(&columns, report.deviation.iter().map(deviation))
+            write_rows(&columns, report.deviation.iter().map(deviation_row))
         }
         Table::Jobs => {
             let columns = [
@@ -58,13 +84,13 @@ pub(super) fn table(report: &Report, table: Table) -> Result<String> {
                 "compass_id",
                 "spared_swing",
             ];
-            let saved = (report.saved.swing_eur, report.saved.swing_h);
-            written(&columns, report.jobs.iter().map(|one| job(one, saved)))
+            let rows = report.jobs.iter().map(|one| job_row(one, &report.saved));
+            write_rows(&columns, rows)
         }
     }
 }
 
-fn due(due: &DueCompass) -> Result<Value> {
+fn due_row(due: &DueCompass) -> Result<Value> {
     let mut fields = serde_json::to_value(due)?;
     let order = fields["order"].take();
     for field in ["state", "port", "planned_at", "firm"] {
@@ -73,18 +99,18 @@ fn due(due: &DueCompass) -> Result<Value> {
     Ok(fields)
 }
 
-fn deviation(deviation: &WorstDeviation) -> Result<Value> {
+fn deviation_row(deviation: &WorstDeviation) -> Result<Value> {
     Ok(serde_json::to_value(deviation)?)
 }
 
-fn job(job: &Job, (swing_eur, swing_h): (f64, f64)) -> Result<Value> {
+fn job_row(job: &Job, saving: &Saving) -> Result<Value> {
     let mut fields = serde_json::to_value(job)?;
-    fields["swing_eur"] = swing_eur.into();
-    fields["swing_h"] = swing_h.into();
+    fields["swing_eur"] = saving.swing_eur.into();
+    fields["swing_h"] = saving.swing_h.into();
     Ok(fields)
 }
 
-fn written(columns: &[&str], rows: impl Iterator<Item = Result<Value>>) -> Result<String> {
+fn write_rows(columns: &[&str], rows: impl Iterator<Item = Result<Value>>) -> Result<String> {
     let internal = |error: csv::Error| Error::Internal(error.into());
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(columns).map_err(internal)?;
@@ -101,7 +127,7 @@ fn written(columns: &[&str], rows: impl Iterator<Item = Result<Value>>) -> Resul
 fn cell(column: &str, value: &Value) -> String {
     match value {
         Value::Null => String::new(),
-        // A name is never a formula to whoever opens the file.
+        // A quote keeps spreadsheets from reading a name as a formula.
         Value::String(text) if text.starts_with(FORMULA) => format!("'{text}"),
         Value::String(text) => text.clone(),
         number if column.ends_with("_deg") => number

@@ -1,19 +1,20 @@
-//! A report on sheets of A4.
+//! A report laid out on sheets of A4.
 
 use super::report::{DueCompass, FeeFrom, Job, Report};
 use binnacle_drawing::paper::{LEFT, LINE, Paper, RIGHT, SIZE};
 use binnacle_drawing::words::{east_west, heading};
-use binnacle_drawing::{Face, Sheet, Style, cut, wrap};
+use binnacle_drawing::{About, Face, Sheet, Style, cut, wrap};
+use binnacle_platform::error::Result;
 use binnacle_schedule::needs::Urgency;
 
-/// More compasses than these are in the CSV.
-const MOST_DEVIATIONS: usize = 25;
-/// The least room that a title wants below it.
-const SOME_LINES: usize = 5;
-/// Space between two columns.
+/// Maximum number of deviations on paper; the CSV has all.
+const MAX_DEVIATIONS: usize = 25;
+/// Minimum number of lines below a title on its sheet.
+const MIN_LINES: usize = 5;
+/// Space between two columns, points.
 const GAP: f32 = 6.0;
 
-/// A column: its title and where it begins.
+/// Title and left edge of a column.
 type Column = (&'static str, f32);
 
 const DUE: [Column; 5] = [
@@ -40,19 +41,34 @@ const JOBS: [Column; 6] = [
     ("Fee, euros", 492.0),
 ];
 
-pub(super) fn sheets(report: &Report) -> Vec<Sheet> {
+impl Report {
+    /// Returns the report as PDF.
+    pub(super) async fn into_pdf(self) -> Result<Vec<u8>> {
+        let about = About {
+            title: format!(
+                "Compass report: {}, {} to {}",
+                self.operator_name, self.from, self.to
+            ),
+            created: self.made_at.0,
+        };
+        let drawn = move || binnacle_drawing::pdf(&lay_out(&self), &about);
+        Ok(tokio::task::spawn_blocking(drawn).await??)
+    }
+}
+
+fn lay_out(report: &Report) -> Vec<Sheet> {
     let mut paper = Paper::new();
-    head(&mut paper, report);
-    due(&mut paper, report);
-    deviation(&mut paper, report);
-    jobs(&mut paper, report);
-    saved(&mut paper, report);
+    put_head(&mut paper, report);
+    put_due(&mut paper, report);
+    put_deviations(&mut paper, report);
+    put_jobs(&mut paper, report);
+    put_saving(&mut paper, report);
     let made = format!("Made by Binnacle on {}.", report.made_at.to_the_minute());
-    let predicted = "Deviations are predicted by each compass's model, and are no certificate.";
+    let predicted = "Deviations are predicted by each compass's model and are not a certificate.";
     paper.finish(&[format!("{made} {predicted}")])
 }
 
-fn head(paper: &mut Paper, report: &Report) {
+fn put_head(paper: &mut Paper, report: &Report) {
     paper.put(LEFT, Style::bold(15.0), "Compass report");
     let time = format!("{} to {}", report.from, report.to);
     paper.put(RIGHT, Style::plain(9.0).end(), &time);
@@ -75,7 +91,7 @@ fn head(paper: &mut Paper, report: &Report) {
         ),
     );
     paper.fact(
-        "To be adjusted",
+        "Due for adjustment",
         &format!(
             "{} overdue, {} urgent, {} soon",
             count(Urgency::Overdue),
@@ -96,7 +112,7 @@ fn head(paper: &mut Paper, report: &Report) {
     });
     paper.fact(
         "Greatest deviation",
-        &largest.unwrap_or_else(|| "not known".to_owned()),
+        &largest.unwrap_or_else(|| "unknown".to_owned()),
     );
     let unknown = unknown.count();
     if unknown > 0 {
@@ -107,29 +123,29 @@ fn head(paper: &mut Paper, report: &Report) {
         &format!(
             "{} compasses, {}",
             report.jobs.len(),
-            saved_in_short(report)
+            summarise_saving(report)
         ),
     );
 }
 
-fn saved_in_short(report: &Report) -> String {
+fn summarise_saving(report: &Report) -> String {
     let saved = &report.saved;
     format!(
         "{} euros and {} hours saved against swinging",
-        euros(saved.saved_eur),
-        hours(saved.saved_h)
+        format_euros(saved.saved_eur),
+        format_hours(saved.saved_h)
     )
 }
 
-fn due(paper: &mut Paper, report: &Report) {
-    paper.room_for(SOME_LINES);
-    paper.title("Due within the terms for \"soon\", and overdue");
+fn put_due(paper: &mut Paper, report: &Report) {
+    paper.room_for(MIN_LINES);
+    paper.title("Overdue or due soon");
     let (now, later): (Vec<&DueCompass>, Vec<&DueCompass>) =
-        report.due.iter().partition(|due| due.presses());
+        report.due.iter().partition(|due| due.is_pressing());
     if now.is_empty() {
         paper.lines(LEFT, Style::plain(SIZE), "No compass.");
     } else {
-        titles(paper, &DUE);
+        put_titles(paper, &DUE);
     }
     for due in now {
         let on = match due.urgency {
@@ -151,26 +167,26 @@ fn due(paper: &mut Paper, report: &Report) {
             (due.reason.clone(), Style::plain(SIZE)),
             (order, Style::plain(SIZE)),
         ];
-        row(paper, &DUE, &cells);
+        put_row(paper, &DUE, &cells);
     }
     if !later.is_empty() {
-        let words = format!("{} more are due later.", later.len());
-        paper.lines(LEFT, Style::plain(SIZE).grey(90), &words);
+        let note = format!("{} more compasses are due later.", later.len());
+        paper.lines(LEFT, Style::plain(SIZE).grey(90), &note);
     }
 }
 
-fn deviation(paper: &mut Paper, report: &Report) {
-    paper.room_for(SOME_LINES);
+fn put_deviations(paper: &mut Paper, report: &Report) {
+    paper.room_for(MIN_LINES);
     paper.title("Greatest deviation");
     let known = report
         .deviation
         .iter()
         .filter(|one| one.deviation_deg.is_some());
-    let (all, shown) = (known.clone().count(), known.take(MOST_DEVIATIONS));
+    let (all, shown) = (known.clone().count(), known.take(MAX_DEVIATIONS));
     if all == 0 {
         paper.lines(LEFT, Style::plain(SIZE), "No compass has a model.");
     } else {
-        titles(paper, &DEVIATION);
+        put_titles(paper, &DEVIATION);
     }
     for one in shown {
         let band = one.band95_deg;
@@ -179,30 +195,33 @@ fn deviation(paper: &mut Paper, report: &Report) {
             one.compass_name.clone(),
             one.compass_deg.map_or_else(String::new, heading),
             one.deviation_deg.map_or_else(String::new, east_west),
-            band.map_or_else(|| "not known".to_owned(), |band| format!("±{band:.1}°")),
+            band.map_or_else(|| "unknown".to_owned(), |band| format!("±{band:.1}°")),
             one.data_until
                 .map_or_else(String::new, binnacle_platform::time::Time::day),
         ];
-        row(
+        put_row(
             paper,
             &DEVIATION,
             &cells.map(|cell| (cell, Style::plain(SIZE))),
         );
     }
-    if all > MOST_DEVIATIONS {
-        let words = format!("{} more have less.", all - MOST_DEVIATIONS);
-        paper.lines(LEFT, Style::plain(SIZE).grey(90), &words);
+    if all > MAX_DEVIATIONS {
+        let note = format!(
+            "{} more compasses have smaller deviations.",
+            all - MAX_DEVIATIONS
+        );
+        paper.lines(LEFT, Style::plain(SIZE).grey(90), &note);
     }
 }
 
-fn jobs(paper: &mut Paper, report: &Report) {
-    paper.room_for(SOME_LINES);
-    paper.title("Adjusted in this time");
+fn put_jobs(paper: &mut Paper, report: &Report) {
+    paper.room_for(MIN_LINES);
+    paper.title("Adjusted in this period");
     if report.jobs.is_empty() {
         paper.lines(LEFT, Style::plain(SIZE), "No compass.");
         return;
     }
-    titles(paper, &JOBS);
+    put_titles(paper, &JOBS);
     for job in &report.jobs {
         let cells = [
             job.vessel_name.clone(),
@@ -210,53 +229,50 @@ fn jobs(paper: &mut Paper, report: &Report) {
             job.port.clone(),
             job.completed_at.day(),
             job.firm.clone().unwrap_or_default(),
-            fee(job),
+            format_fee(job),
         ];
-        row(paper, &JOBS, &cells.map(|cell| (cell, Style::plain(SIZE))));
+        put_row(paper, &JOBS, &cells.map(|cell| (cell, Style::plain(SIZE))));
     }
 }
 
-fn fee(job: &Job) -> String {
+fn format_fee(job: &Job) -> String {
     match (job.fee_eur, job.fee_from) {
-        (Some(eur), Some(FeeFrom::Terms)) => format!("{} (usual)", euros(eur)),
-        (Some(eur), _) => euros(eur),
-        (None, _) => "not known".to_owned(),
+        (Some(eur), Some(FeeFrom::Terms)) => format!("{} (usual)", format_euros(eur)),
+        (Some(eur), _) => format_euros(eur),
+        (None, _) => "unknown".to_owned(),
     }
 }
 
-fn saved(paper: &mut Paper, report: &Report) {
+fn put_saving(paper: &mut Paper, report: &Report) {
     let saved = &report.saved;
-    paper.room_for(SOME_LINES);
+    paper.room_for(MIN_LINES);
     paper.title("Saved against swinging");
     let failed = report.jobs.len() - saved.jobs;
     let mut sentences = vec![format!(
-        "Adjustments at the berth: {}. Swings that they spared, one for all compasses of a ship \
-         at a visit: {}, of {} euros and {} hours each: {} euros, less {} euros of all fees \
-         leaves {} euros, and {} hours of ships' time.",
+        "Adjustments at the berth: {}. Swings avoided, one for all compasses of a vessel at a \
+         visit: {}, at {} euros and {} hours each: {} euros. Less {} euros of fees: {} euros \
+         saved, and {} hours of vessels' time.",
         saved.jobs,
         saved.swings,
-        euros(saved.swing_eur),
-        hours(saved.swing_h),
-        euros(saved.swings as f64 * saved.swing_eur),
-        euros(saved.fees_eur),
-        euros(saved.saved_eur),
-        hours(saved.saved_h)
+        format_euros(saved.swing_eur),
+        format_hours(saved.swing_h),
+        format_euros(saved.swings as f64 * saved.swing_eur),
+        format_euros(saved.fees_eur),
+        format_euros(saved.saved_eur),
+        format_hours(saved.saved_h)
     )];
     if failed > 0 {
         sentences.push(format!(
-            "Not counted, but for their fees, as the sea does not confirm them: {failed}."
+            "Not confirmed at sea, counted with their fees only: {failed}."
         ));
     }
     if saved.without_fee > 0 {
-        sentences.push(format!(
-            "Jobs whose fees are not known: {}.",
-            saved.without_fee
-        ));
+        sentences.push(format!("Jobs with unknown fees: {}.", saved.without_fee));
     }
     paper.lines(LEFT, Style::plain(SIZE), &sentences.join(" "));
 }
 
-fn titles(paper: &mut Paper, columns: &[Column]) {
+fn put_titles(paper: &mut Paper, columns: &[Column]) {
     paper.room_for(2);
     for (title, x) in columns {
         paper.put(*x, Style::plain(7.0).grey(90), title);
@@ -264,7 +280,7 @@ fn titles(paper: &mut Paper, columns: &[Column]) {
     paper.down(LINE);
 }
 
-fn row(paper: &mut Paper, columns: &[Column], cells: &[(String, Style)]) {
+fn put_row(paper: &mut Paper, columns: &[Column], cells: &[(String, Style)]) {
     let wrapped: Vec<Vec<String>> = columns
         .iter()
         .zip(cells)
@@ -286,8 +302,8 @@ fn row(paper: &mut Paper, columns: &[Column], cells: &[(String, Style)]) {
     }
 }
 
-/// Whole euros, in groups of three.
-fn euros(eur: f64) -> String {
+/// Formats whole euros with digits in groups of three.
+fn format_euros(eur: f64) -> String {
     let digits = format!("{:.0}", eur.abs());
     let groups = digits.as_bytes().rchunks(3).rev();
     let groups: Vec<String> = groups
@@ -297,7 +313,7 @@ fn euros(eur: f64) -> String {
     format!("{sign}{}", groups.join(","))
 }
 
-fn hours(hours: f64) -> String {
+fn format_hours(hours: f64) -> String {
     let text = format!("{hours:.1}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
@@ -313,8 +329,8 @@ mod tests {
         let plain = |text: &str| (text.to_owned(), Style::plain(SIZE));
         let cells = ["Nao", "Standard compass", "2026-12-20", reason, "none"].map(plain);
         let mut paper = Paper::new();
-        row(&mut paper, &DUE, &cells);
-        row(&mut paper, &DUE, &cells);
+        put_row(&mut paper, &DUE, &cells);
+        put_row(&mut paper, &DUE, &cells);
         let printed = binnacle_drawing::svg(&paper.finish(&[]), "");
         for word in reason.split_whitespace() {
             assert!(printed.contains(word), "{word}: {printed}");
@@ -324,8 +340,8 @@ mod tests {
 
     #[test]
     fn money_is_written_in_groups_with_its_sign() {
-        let all = [0.0, 12.4, 999.6, 6000.0, 1_234_567.0, -4200.0].map(euros);
+        let all = [0.0, 12.4, 999.6, 6000.0, 1_234_567.0, -4200.0].map(format_euros);
         assert_eq!(all, ["0", "12", "1,000", "6,000", "1,234,567", "−4,200"]);
-        assert_eq!([3.0, 7.5].map(hours), ["3", "7.5"]);
+        assert_eq!([3.0, 7.5].map(format_hours), ["3", "7.5"]);
     }
 }

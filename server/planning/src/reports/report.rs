@@ -1,6 +1,5 @@
-//! A fleet's report, as JSON has it; CSV and paper are made from the same.
+//! A fleet's report, the source of JSON, CSV and PDF.
 
-use crate::needs::UrgencySchema;
 use binnacle_orders::work_orders::State;
 use binnacle_platform::ids::{CompassId, OrderId, VesselId};
 use binnacle_platform::time::Time;
@@ -16,62 +15,60 @@ pub(super) struct Report {
     /// Name of the operator.
     #[schema(example = "Naviera Vizcaína")]
     pub(super) operator_name: String,
-    /// The first day of the time that jobs are counted in, UTC.
+    /// First day of the period in which jobs are counted, UTC.
     pub(super) from: NaiveDate,
-    /// The last.
+    /// Last day of the period, UTC.
     pub(super) to: NaiveDate,
     /// Time of the report; due dates and deviations are as of then.
     pub(super) made_at: Time,
-    /// Vessels in the fleet.
+    /// Number of vessels in the fleet.
     pub(super) vessels: usize,
-    /// Their compasses.
+    /// Number of their compasses.
     pub(super) compasses: usize,
-    /// Every compass that is due some day, the first due first.
+    /// Every compass with a due date, the earliest first.
     pub(super) due: Vec<DueCompass>,
-    /// The greatest deviation of each compass, the greatest first; those of which nothing
-    /// is known last.
+    /// Greatest deviation of each compass, the largest first and unknown ones last.
     pub(super) deviation: Vec<WorstDeviation>,
-    /// Adjustments that were completed in the time, in order.
+    /// Adjustments completed in the period, in order.
     pub(super) jobs: Vec<Job>,
     /// Savings against swinging.
     pub(super) saved: Saving,
 }
 
-/// A compass and when it is due.
+/// Due date of a compass.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = ReportDue)]
 pub(super) struct DueCompass {
     /// The vessel.
     pub(super) vessel_id: VesselId,
-    /// Her name.
+    /// Name of the vessel.
     pub(super) vessel_name: String,
     /// The compass.
     pub(super) compass_id: CompassId,
-    /// Its name.
+    /// Name of the compass.
     pub(super) compass_name: String,
-    /// The last day on which it may be adjusted.
+    /// Last day for the adjustment.
     pub(super) due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub(super) urgency: Urgency,
-    /// Reason in plain words.
+    /// Reason of the due date, as a sentence.
     pub(super) reason: String,
-    /// The day of the last adjustment on record.
+    /// Day of the last adjustment on record.
     #[schema(required)]
     pub(super) adjusted_on: Option<NaiveDate>,
-    /// The work order that is under way for it.
+    /// Its work order under way.
     #[schema(required)]
     pub(super) order: Option<UnderWay>,
 }
 
 impl DueCompass {
     /// Returns whether the compass is due soon or overdue.
-    pub(super) fn presses(&self) -> bool {
+    pub(super) fn is_pressing(&self) -> bool {
         self.urgency > Urgency::Routine
     }
 }
 
-/// A work order that is under way, in short.
+/// Summary of a work order under way.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = ReportOrder)]
 pub(super) struct UnderWay {
@@ -88,33 +85,33 @@ pub(super) struct UnderWay {
     pub(super) firm: Option<String>,
 }
 
-/// A compass and its greatest deviation, where its model was made.
+/// Greatest deviation of a compass, at the place of its model.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = ReportDeviation)]
 pub(super) struct WorstDeviation {
     /// The vessel.
     pub(super) vessel_id: VesselId,
-    /// Her name.
+    /// Name of the vessel.
     pub(super) vessel_name: String,
     /// The compass.
     pub(super) compass_id: CompassId,
-    /// Its name.
+    /// Name of the compass.
     pub(super) compass_name: String,
-    /// The compass heading with the greatest deviation; none without a model.
+    /// Compass heading of the greatest deviation; `null` without a model.
     #[schema(required)]
     pub(super) compass_deg: Option<f64>,
-    /// The deviation there, degrees, east positive.
+    /// Deviation there, degrees, east positive.
     #[schema(required)]
     pub(super) deviation_deg: Option<f64>,
     /// Half the width of its 95 % band, degrees.
     #[schema(required)]
     pub(super) band95_deg: Option<f64>,
-    /// The time of the last sample in the model.
+    /// Time of the last sample in the model.
     #[schema(required)]
     pub(super) data_until: Option<Time>,
 }
 
-/// An adjustment that was completed.
+/// Completed adjustment.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = ReportJob)]
 pub(super) struct Job {
@@ -122,11 +119,11 @@ pub(super) struct Job {
     pub(super) order_id: OrderId,
     /// The vessel.
     pub(super) vessel_id: VesselId,
-    /// Her name.
+    /// Name of the vessel.
     pub(super) vessel_name: String,
     /// The compass.
     pub(super) compass_id: CompassId,
-    /// Its name.
+    /// Name of the compass.
     pub(super) compass_name: String,
     /// The port.
     pub(super) port: String,
@@ -137,15 +134,15 @@ pub(super) struct Job {
     pub(super) firm: Option<String>,
     /// State of the order.
     pub(super) state: State,
-    /// Whether it spared the vessel a swing; not if headings at sea contradict it.
+    /// `true` when it spared the vessel a swing: headings at sea do not contradict it.
     pub(super) spared_swing: bool,
-    /// Fee of the firm, euros; none where it is unknown.
+    /// Fee of the firm, euros; `null` when unknown.
     #[schema(required)]
     pub(super) fee_eur: Option<f64>,
     /// Source of the fee.
     #[schema(required)]
     pub(super) fee_from: Option<FeeFrom>,
-    /// Tells one visit from others.
+    /// Number of the visit.
     #[serde(skip)]
     pub(super) visit: usize,
 }
@@ -155,10 +152,10 @@ pub(super) struct Job {
 #[serde(rename_all = "snake_case")]
 #[schema(as = ReportFeeFrom)]
 pub(super) enum FeeFrom {
-    /// The firm proposed it and the operator agreed.
+    /// Proposed by the firm and agreed by the operator.
     Agreed,
-    /// It is the firm's usual fee, by its terms of today, without travel; for a compass
-    /// after the first of a visit, what each further one costs.
+    /// Usual fee by the firm's current terms, without travel. A further compass of a visit has the
+    /// fee for further ones.
     Terms,
 }
 
@@ -166,11 +163,9 @@ pub(super) enum FeeFrom {
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[schema(as = ReportSaved)]
 pub(super) struct Saving {
-    /// Jobs that spared the ship a swing: those completed, but for any that the sea does
-    /// not confirm.
+    /// Number of jobs that spared the vessel a swing: completed and not contradicted at sea.
     pub(super) jobs: usize,
-    /// The swings that they spared: one for all compasses of a ship that were adjusted at
-    /// one visit.
+    /// Number of swings that they spared, one for all compasses adjusted at one visit.
     pub(super) swings: usize,
     /// Cost of a swing, euros, from the operator's settings.
     pub(super) swing_eur: f64,
@@ -180,8 +175,8 @@ pub(super) struct Saving {
     pub(super) fees_eur: f64,
     /// Number of jobs whose fee is unknown.
     pub(super) without_fee: usize,
-    /// The swings' cost less the fees, euros; less than nothing if the fees are more.
+    /// Cost of the swings less the fees, euros; negative when the fees are higher.
     pub(super) saved_eur: f64,
-    /// The ship's hours that swings would have taken.
+    /// Duration of the spared swings, hours.
     pub(super) saved_h: f64,
 }

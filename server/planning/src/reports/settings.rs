@@ -1,7 +1,7 @@
-//! `/reports/settings`: what a swing costs, and who gets the monthly report.
+//! `/reports/settings`: cost of a swing, and recipients of the monthly report.
 //!
-//! What always holds: whoever gets the report by mail is a receiver of the outbox, added
-//! and removed with the settings.
+//! What always holds: each recipient is a receiver of the outbox, added and removed with the
+//! settings.
 
 use axum::extract::{FromRef, State};
 use binnacle_platform::access::{Reader, Writer};
@@ -21,9 +21,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// Maximum number of recipients of the monthly report.
-const MOST_RECIPIENTS: usize = 20;
-const MOST_EUR: f64 = 1e6;
-const LONGEST_SWING_H: f64 = 72.0;
+const MAX_RECIPIENTS: usize = 20;
+/// Maximum cost of a swing, euros.
+const MAX_SWING_EUR: f64 = 1e6;
+/// Maximum duration of a swing, hours.
+const MAX_SWING_H: f64 = 72.0;
 
 pub(super) fn router<S>() -> OpenApiRouter<S>
 where
@@ -61,21 +63,21 @@ impl Default for Settings {
     }
 }
 
-/// See what reports reckon with
+/// See the settings of reports
 #[utoipa::path(get, path = "/reports/settings", tag = "fleet",
     responses((status = 200, body = Settings), (status = 401, body = Problem)))]
 async fn find_report_settings(State(app): State<App>, reader: Reader) -> Result<Json<Settings>> {
     Ok(Json(find(&app.db, reader.operator).await?))
 }
 
-/// Say what reports reckon with
+/// Change the settings of reports
 ///
-/// Who is added to `monthly_to` gets the report of the month that goes on, after its end,
-/// and of each one after it.
+/// A recipient added to `monthly_to` gets the report of the current month after its end, and of
+/// each later one.
 #[utoipa::path(put, path = "/reports/settings", tag = "fleet", request_body = Settings,
     responses((status = 200, body = Settings), (status = 401, body = Problem),
               (status = 403, body = Problem),
-              (status = 409, description = "The server was not told how to send mail", body = Problem),
+              (status = 409, description = "This server is not set up to send mail", body = Problem),
               (status = 422, body = Problem)))]
 async fn set_report_settings(
     State(app): State<App>,
@@ -91,12 +93,12 @@ async fn set_report_settings(
     let mut tx = request.begin().await?;
     let by = session::name_of(&mut tx, writer.user).await?;
     put(&mut tx, writer.operator, &settings, &by, now).await?;
-    bring_recipients_in_line(&mut tx, writer.operator, &settings.monthly_to, now).await?;
+    reconcile_recipients(&mut tx, writer.operator, &settings.monthly_to, now).await?;
     tx.commit().await?;
     Ok(Json(settings))
 }
 
-/// An operator's settings, or the defaults.
+/// Returns an operator's settings, or the defaults.
 pub(super) async fn find(db: &Db, operator: OperatorId) -> Result<Settings> {
     let found = row!(
         db,
@@ -132,11 +134,11 @@ async fn put(
     Ok(())
 }
 
-/// Makes receivers of those who are new, and removes those who are not there any more.
-async fn bring_recipients_in_line(
+/// Adds new recipients to the outbox and removes former ones.
+async fn reconcile_recipients(
     tx: &mut Tx,
     operator: OperatorId,
-    wanted: &[String],
+    addresses: &[String],
     now: Time,
 ) -> Result<()> {
     let known = rows!(
@@ -146,11 +148,11 @@ async fn bring_recipients_in_line(
         operator
     )?;
     for (id, address) in &known {
-        if !wanted.contains(address) {
+        if !addresses.contains(address) {
             outbox::forget(tx, id.0).await?;
         }
     }
-    for address in wanted {
+    for address in addresses {
         if known.iter().any(|(_, known)| known == address) {
             continue;
         }
@@ -172,18 +174,18 @@ async fn bring_recipients_in_line(
 impl Settings {
     fn checked(self) -> Result<Settings> {
         let invalid = |field, detail: String| Err(Error::Invalid { field, detail });
-        if !(0.0..=MOST_EUR).contains(&self.swing_eur) {
-            let detail = format!("{} is outside 0 to {MOST_EUR}", self.swing_eur);
+        if !(0.0..=MAX_SWING_EUR).contains(&self.swing_eur) {
+            let detail = format!("{} is outside 0 to {MAX_SWING_EUR}", self.swing_eur);
             return invalid("swing_eur", detail);
         }
-        if !(0.0..=LONGEST_SWING_H).contains(&self.swing_h) {
-            let detail = format!("{} is outside 0 to {LONGEST_SWING_H}", self.swing_h);
+        if !(0.0..=MAX_SWING_H).contains(&self.swing_h) {
+            let detail = format!("{} is outside 0 to {MAX_SWING_H}", self.swing_h);
             return invalid("swing_h", detail);
         }
-        if self.monthly_to.len() > MOST_RECIPIENTS {
+        if self.monthly_to.len() > MAX_RECIPIENTS {
             return invalid(
                 "monthly_to",
-                format!("has more than {MOST_RECIPIENTS} addresses"),
+                format!("has more than {MAX_RECIPIENTS} addresses"),
             );
         }
         let mut monthly_to: Vec<String> = Vec::new();

@@ -1,7 +1,7 @@
-//! Limits on schedules that are made at once: each takes a core for seconds.
+//! Limit on concurrent solvers, each of which takes a core for seconds.
 //!
-//! What always holds: few plans are made at once, and one of an operator's at a time, so that
-//! an operator's repeated requests wait for each other and delay nobody else.
+//! What always holds: few plans are made at once, and one at a time for each operator. Repeated
+//! requests of an operator wait for each other and delay no other operator.
 
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::OperatorId;
@@ -9,13 +9,13 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::{OwnedMutexGuard, OwnedSemaphorePermit, Semaphore};
 
-/// Schedules made at once.
-const AT_ONCE: usize = 2;
+/// Maximum number of concurrent solvers.
+const MAX_CONCURRENT: usize = 2;
 
 /// Exclusive right to make an operator's plan.
 pub(super) type PlanLock = OwnedMutexGuard<()>;
 
-/// Slots for schedules being made in this process, and a lock for each operator.
+/// Slots for the concurrent solvers of this process, and a lock for each operator.
 #[derive(Clone, Debug)]
 pub struct PlanSlots {
     slots: Arc<Semaphore>,
@@ -25,21 +25,21 @@ pub struct PlanSlots {
 impl Default for PlanSlots {
     fn default() -> PlanSlots {
         PlanSlots {
-            slots: Arc::new(Semaphore::new(AT_ONCE)),
+            slots: Arc::new(Semaphore::new(MAX_CONCURRENT)),
             locks: Arc::default(),
         }
     }
 }
 
 impl PlanSlots {
-    /// Waits for an operator's lock.
+    /// Waits for an operator's lock and takes it.
     pub(super) async fn lock_of(&self, operator: OperatorId) -> PlanLock {
-        self.lock_for(operator).lock_owned().await
+        self.operator_mutex(operator).lock_owned().await
     }
 
-    /// Returns an operator's lock if it is free.
+    /// Takes an operator's lock if it is free.
     pub(super) fn try_lock_of(&self, operator: OperatorId) -> Option<PlanLock> {
-        self.lock_for(operator).try_lock_owned().ok()
+        self.operator_mutex(operator).try_lock_owned().ok()
     }
 
     /// Waits for a slot to make a plan in.
@@ -51,7 +51,7 @@ impl PlanSlots {
         Ok(permit.map_err(anyhow::Error::from)?)
     }
 
-    fn lock_for(&self, operator: OperatorId) -> Arc<tokio::sync::Mutex<()>> {
+    fn operator_mutex(&self, operator: OperatorId) -> Arc<tokio::sync::Mutex<()>> {
         let mut all = self.locks.lock().unwrap_or_else(PoisonError::into_inner);
         // A lock that nobody holds or waits for is dropped.
         all.retain(|_, lock| Arc::strong_count(lock) > 1);
@@ -65,7 +65,7 @@ mod tests {
     use futures_util::FutureExt;
 
     #[tokio::test]
-    async fn of_one_operator_one_plan_is_made_at_a_time_and_others_do_not_wait_for_it() {
+    async fn one_plan_of_an_operator_is_made_at_a_time_and_others_do_not_wait() {
         let slots = PlanSlots::default();
         let (ada, eve) = (OperatorId::new(), OperatorId::new());
         let first = slots.lock_of(ada).await;

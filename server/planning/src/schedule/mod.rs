@@ -1,12 +1,12 @@
-//! The fleet's schedule: who adjusts which compass, where and when, kept right as ETAs,
-//! needs and answers change.
+//! The fleet's schedule: firm, port call and day of each adjustment, updated as ETAs, needs and
+//! orders change.
 //!
 //! What always holds:
 //!
-//! - A plan is kept with what it was made from, whole, so that it can be made again to the
-//!   byte on the command line; the highest version is current.
-//! - Whatever changes what it rests on asks for another one in the same transaction.
-//! - Solving holds no transaction, and of two who solve at once the second begins anew.
+//! - A plan is stored with its whole input, so that the command line reproduces it to the byte.
+//!   The highest version is current.
+//! - A change to the input requests a new schedule in the same transaction.
+//! - Solving holds no transaction. Of two concurrent solvers the second starts over.
 
 mod at_risk;
 mod concurrency;
@@ -14,17 +14,14 @@ mod input;
 mod offer;
 mod pins;
 mod plan;
-mod schema;
 mod settings;
 mod solve;
 mod store;
 mod subscriber;
-
 mod worker;
 
 pub use concurrency::PlanSlots;
 pub use plan::Plan;
-pub use settings::terms;
 pub use subscriber::{on_particulars_change, on_service_change, on_terms_change, on_vessel_event};
 pub use worker::{run, step};
 
@@ -43,7 +40,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes of this part.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -61,14 +58,14 @@ where
         .merge(settings::router())
 }
 
-/// The current plan, and whether it is still right.
+/// The current plan and its state.
 #[derive(Serialize, ToSchema)]
 #[schema(as = Schedule)]
-struct Current {
-    /// The plan; none before the first.
+struct CurrentSchedule {
+    /// The plan; `null` before the first.
     #[schema(required)]
     plan: Option<Plan>,
-    /// Time of the first change that the plan does not know of. A new plan follows automatically.
+    /// Time of the first change since the plan. A new plan follows automatically.
     #[schema(required)]
     outdated_since: Option<Time>,
     /// Error of the last attempt to make a plan.
@@ -76,25 +73,25 @@ struct Current {
     problem: Option<String>,
 }
 
-/// A plan in a line.
+/// Summary of a plan.
 #[derive(Serialize, ToSchema)]
 #[schema(as = SchedulePlanSummary)]
 struct PlanSummary {
-    /// Counts the operator's plans from 1.
+    /// Version, counted from 1 for each operator.
     version: i64,
     /// Time of creation.
     solved_at: Time,
-    /// Cost by the weights, including everything unmet.
+    /// Cost by the weights, including unmet needs.
     cost_eur: f64,
     /// Distance of the cost from its lower bound, per cent.
     gap_percent: f64,
-    /// Fees and travel that are really paid.
+    /// Fees and travel to be paid.
     paid_eur: f64,
-    /// Jobs in it.
+    /// Number of jobs.
     jobs: usize,
     /// Number of needs that are not scheduled, or only late.
     unscheduled: usize,
-    /// Jobs of the plan before that moved or were dropped.
+    /// Number of jobs of the previous plan that moved or were dropped.
     moved: usize,
 }
 
@@ -102,7 +99,7 @@ struct PlanSummary {
 #[derive(Serialize, ToSchema)]
 #[schema(as = SchedulePlanList)]
 struct PlanList {
-    /// The newest first; the last thirty are kept.
+    /// Plans, the newest first; the last thirty are kept.
     items: Vec<PlanSummary>,
     /// `after` of the next page.
     #[schema(required)]
@@ -111,37 +108,41 @@ struct PlanList {
 
 /// See the current schedule
 #[utoipa::path(get, path = "/schedule", tag = "adjusting",
-    responses((status = 200, body = Current), (status = 401, body = Problem)))]
-async fn find_schedule(State(app): State<App>, reader: Reader) -> Result<Json<Current>> {
-    let plan = store::current(&app.db, reader.operator).await?;
-    current(&app, reader.operator, plan).await
+    responses((status = 200, body = CurrentSchedule), (status = 401, body = Problem)))]
+async fn find_schedule(State(app): State<App>, reader: Reader) -> Result<Json<CurrentSchedule>> {
+    let plan = store::find_current(&app.db, reader.operator).await?;
+    describe_plan(&app, reader.operator, plan).await
 }
 
-async fn current(app: &App, operator: OperatorId, plan: Option<Plan>) -> Result<Json<Current>> {
-    let asks = store::asks(&app.db, operator).await?;
-    Ok(Json(Current {
+async fn describe_plan(
+    app: &App,
+    operator: OperatorId,
+    plan: Option<Plan>,
+) -> Result<Json<CurrentSchedule>> {
+    let requests = store::list_requests(&app.db, operator).await?;
+    Ok(Json(CurrentSchedule {
         plan,
-        outdated_since: asks.first().map(|(_, at)| *at),
-        problem: store::last_error(&app.db, operator).await?,
+        outdated_since: requests.first().map(|(_, at)| *at),
+        problem: store::find_last_error(&app.db, operator).await?,
     }))
 }
 
-/// Make the schedule anew, now
+/// Make a new schedule now
 ///
-/// It is made by itself half a minute after something has changed; this waits for it. When
-/// nothing has changed within the hour the plan stays as it is.
+/// The schedule is made automatically half a minute after a change; this request makes it at once
+/// and waits for it. Without a change within the hour the plan stays.
 #[utoipa::path(post, path = "/schedule/solve", tag = "adjusting",
-    responses((status = 200, body = Current), (status = 401, body = Problem),
+    responses((status = 200, body = CurrentSchedule), (status = 401, body = Problem),
               (status = 403, body = Problem),
-              (status = 409, description = "Others make it at the same time, or the fleet is too large", body = Problem)))]
+              (status = 409, description = "It is being made by others, or the fleet is too large", body = Problem)))]
 async fn solve_schedule(
     State(app): State<App>,
     State(slots): State<PlanSlots>,
     request: RequestContext,
     writer: Writer,
-) -> Result<Json<Current>> {
+) -> Result<Json<CurrentSchedule>> {
     let plan = solve::solve(&app, &request, &slots, writer.operator).await?;
-    current(&app, writer.operator, Some(plan)).await
+    describe_plan(&app, writer.operator, Some(plan)).await
 }
 
 /// List the last plans
@@ -149,10 +150,10 @@ async fn solve_schedule(
     responses((status = 200, body = PlanList), (status = 401, body = Problem)))]
 async fn list_plans(State(app): State<App>, reader: Reader, page: Page) -> Result<Json<PlanList>> {
     let before = page.after_number()?;
-    let found = store::versions(&app.db, reader.operator, before, page.fetch()).await?;
+    let found = store::list(&app.db, reader.operator, before, page.fetch()).await?;
     let listed = page.cut(found, |plan| plan.version.to_string());
     Ok(Json(PlanList {
-        items: listed.items.iter().map(PlanSummary::of).collect(),
+        items: listed.items.iter().map(PlanSummary::new).collect(),
         next: listed.next,
     }))
 }
@@ -167,25 +168,25 @@ async fn find_schedule_plan(
     reader: Reader,
     Id(version): Id<i64>,
 ) -> Result<Json<Plan>> {
-    let plan = store::find(&app.db, reader.operator, version).await?;
+    let plan = store::find_version(&app.db, reader.operator, version).await?;
     Ok(Json(plan.ok_or(Error::NotFound("plan"))?))
 }
 
-/// See what the current plan was made from
+/// See the input of the current plan
 ///
-/// As `binnacle-server schedule --input` reads it, which makes the same plan of it.
+/// `binnacle-server schedule --input` makes the same plan of it.
 #[utoipa::path(get, path = "/schedule/input", tag = "adjusting",
     responses((status = 200, content_type = "application/json", body = Object),
               (status = 401, body = Problem),
               (status = 404, description = "There is no plan yet", body = Problem)))]
 async fn find_input(State(app): State<App>, reader: Reader) -> Result<Response> {
-    let input = store::input(&app.db, reader.operator).await?;
+    let input = store::find_input(&app.db, reader.operator).await?;
     let input = input.ok_or(Error::NotFound("plan"))?;
     Ok(([(CONTENT_TYPE, "application/json")], input).into_response())
 }
 
 impl PlanSummary {
-    fn of(plan: &Plan) -> PlanSummary {
+    fn new(plan: &Plan) -> PlanSummary {
         PlanSummary {
             version: plan.version,
             solved_at: plan.solved_at,

@@ -1,8 +1,8 @@
-//! `/schedule/offer`: a planned job becomes work orders that are offered to its firm.
+//! `/schedule/offer`: work orders for a planned job, offered to its firm.
 //!
-//! What always holds: a compass has one order under way at a time, a firm is offered no more
-//! ships on a day than it has teams for, and a job is offered whole or not at all. The fees
-//! of its orders come to the fee that the plan has for the job.
+//! What always holds: a compass has one order under way at a time. A firm gets no more jobs on a
+//! day than it has teams for. A job is offered whole or not at all, and the fees of its orders add
+//! up to the job's fee in the plan.
 
 use super::plan::{Job, Plan};
 use super::store;
@@ -41,14 +41,14 @@ where
     "answer_within_hours": 48, "text": "Two compasses; gangway on the starboard side."
 }))]
 struct NewScheduleOffer {
-    /// The plan that was looked at: another one may say something else.
+    /// Version of the plan that the offer is based on; a newer one may differ.
     version: i64,
-    /// A compass of the job; its others go with it.
+    /// A compass of the job; the job's other compasses are offered too.
     compass_id: CompassId,
-    /// So long the firm has for an answer, 1 to 720 hours; 48 if not said.
+    /// Time for the firm to reply, 1 to 720 hours; 48 by default.
     #[schema(minimum = 1, maximum = 720)]
     answer_within_hours: Option<u32>,
-    /// Firms that are asked next, in this order, when it says no or nothing.
+    /// Firms to offer it to next, in this order, when the firm declines or does not reply.
     #[serde(default)]
     then: Vec<FirmId>,
     /// Message to the firms.
@@ -60,7 +60,7 @@ struct NewScheduleOffer {
 #[derive(Serialize, ToSchema)]
 #[schema(as = ScheduleOffered)]
 struct Offered {
-    /// An order for each compass of the job.
+    /// One order for each compass of the job.
     orders: Vec<OfferedOrder>,
 }
 
@@ -76,14 +76,14 @@ struct OfferedOrder {
 
 /// Offer a planned job to its firm
 ///
-/// Writes a work order for each compass of the job. From then on the plan keeps the job
-/// where it is unless there is cause. An order that every firm declined is cancelled for it.
+/// Creates a work order for each compass of the job. From then on the plan keeps the job in place
+/// unless there is cause to move it. An order that every firm declined is cancelled.
 #[utoipa::path(post, path = "/schedule/offer", tag = "adjusting", request_body = NewScheduleOffer,
     responses((status = 201, body = Offered), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 404, description = "No job of the plan is for that compass", body = Problem),
-              (status = 409, description = "There is another plan, the job is offered already, an \
-                             order under way says something else, or the firm has no team left \
+              (status = 409, description = "There is a newer plan, the job has already been offered, an \
+                             order under way differs, or the firm has no team left \
                              that day", body = Problem),
               (status = 422, body = Problem)))]
 async fn offer_job(
@@ -93,8 +93,8 @@ async fn offer_job(
     Valid(new): Valid<NewScheduleOffer>,
 ) -> Result<(StatusCode, Json<Offered>)> {
     let text = optional_text("text", new.text.as_deref())?;
-    let plan = store::current(&app.db, writer.operator).await?;
-    let job = job_of(plan.as_ref(), &new)?;
+    let plan = store::find_current(&app.db, writer.operator).await?;
+    let job = find_job(plan.as_ref(), &new)?;
     let terms = firms::of_operator(&app.db, writer.operator).await?;
     let terms: BTreeMap<FirmId, Terms> = terms
         .into_iter()
@@ -104,13 +104,14 @@ async fn offer_job(
     for compass in &job.compasses {
         work_orders::lock_compass(&mut tx, job.vessel_id, compass.compass_id).await?;
     }
-    let (mut orders, mut told) = (Vec::new(), Vec::new());
+    let (mut orders, mut pending) = (Vec::new(), Vec::new());
     for order in &job.instead_of {
-        let (goes_on, news) = api::cancel_declined(&app, tx, writer, job.vessel_id, *order).await?;
-        (tx, told) = (goes_on, told.into_iter().chain(news).collect());
+        let (open, events) = api::cancel_declined(&app, tx, writer, job.vessel_id, *order).await?;
+        tx = open;
+        pending.extend(events);
     }
     for (nth, compass) in job.compasses.iter().enumerate() {
-        let fees = |(firm, terms): (&FirmId, &Terms)| (*firm, fee(job, *firm, terms, nth));
+        let fees = |(firm, terms): (&FirmId, &Terms)| (*firm, split_fee(job, *firm, terms, nth));
         let offer = NewOffer {
             firms: std::iter::once(job.firm_id)
                 .chain(new.then.iter().copied().filter(|firm| *firm != job.firm_id))
@@ -122,25 +123,26 @@ async fn offer_job(
         };
         let id = OrderId::new();
         dispatch::link_once(&mut tx, job.vessel_id, id, job.call_id).await?;
-        let order = order_of(job, compass.compass_id, offer);
-        let (goes_on, news) = api::write(&app, &request, tx, writer, id, order).await?;
-        (tx, told) = (goes_on, told.into_iter().chain(news).collect());
+        let order = new_order(job, compass.compass_id, offer);
+        let (open, events) = api::write(&app, &request, tx, writer, id, order).await?;
+        tx = open;
+        pending.extend(events);
         orders.push(OfferedOrder {
             order_id: id,
             compass_id: compass.compass_id,
         });
     }
     tx.commit().await?;
-    for event in told {
+    for event in pending {
         app.publish(event);
     }
     app.work.notify_one();
     Ok((StatusCode::CREATED, Json(Offered { orders })))
 }
 
-/// A firm's fee for the nth compass of a job. The first bears the visit's; those of the firm
-/// that it is planned with come to what the plan has.
-fn fee(job: &Job, firm: FirmId, terms: &Terms, nth: usize) -> f64 {
+/// Returns a firm's fee for the nth compass of a job. The first bears the fee of the visit. The
+/// fees of the planned firm add up to the plan's.
+fn split_fee(job: &Job, firm: FirmId, terms: &Terms, nth: usize) -> f64 {
     let extra = f64::from(terms.extra_compass_eur);
     if firm != job.firm_id {
         return if nth == 0 {
@@ -151,7 +153,7 @@ fn fee(job: &Job, firm: FirmId, terms: &Terms, nth: usize) -> f64 {
     }
     #[allow(clippy::cast_precision_loss, reason = "a ship has few compasses")]
     let compasses = job.compasses.len() as f64;
-    // The terms may be others than those that it was planned by.
+    // The terms may have changed since the plan.
     let extra = extra.min(job.fee_eur / compasses);
     if nth == 0 {
         job.fee_eur - extra * (compasses - 1.0)
@@ -160,21 +162,22 @@ fn fee(job: &Job, firm: FirmId, terms: &Terms, nth: usize) -> f64 {
     }
 }
 
-fn job_of<'a>(plan: Option<&'a Plan>, new: &NewScheduleOffer) -> Result<&'a Job> {
-    let wrong = |why: String| Err(Error::WrongState(why));
+/// Returns the job to offer, if the plan still has it as proposed.
+fn find_job<'a>(plan: Option<&'a Plan>, new: &NewScheduleOffer) -> Result<&'a Job> {
+    let refused = |why: String| Err(Error::WrongState(why));
     let plan = plan.ok_or(Error::NotFound("plan"))?;
     if plan.version != new.version {
-        return wrong(format!("the plan is of version {} now", plan.version));
+        return refused(format!("the current plan has version {}", plan.version));
     }
     let job = plan.job_of(new.compass_id).ok_or(Error::NotFound("job"))?;
     if job.state != JobState::Proposed {
-        return wrong("the job is offered already".to_owned());
+        return refused("the job has already been offered".to_owned());
     }
     Ok(job)
 }
 
-/// The order of one compass of a job.
-fn order_of(job: &Job, compass_id: CompassId, offer: NewOffer) -> NewOrder {
+/// Returns the order of one compass of a job.
+fn new_order(job: &Job, compass_id: CompassId, offer: NewOffer) -> NewOrder {
     NewOrder {
         vessel_id: job.vessel_id,
         compass_id,

@@ -1,8 +1,8 @@
-//! `/schedule/pins`: what a person wants as it is.
+//! `/schedule/pins`: jobs that a person has fixed.
 //!
-//! What always holds: a pin names a call of the compass's own vessel, a firm that the
-//! operator plans with and a day of the call. It moves only for cause, as a confirmed job
-//! does, and the plan says the cause.
+//! What always holds: a pin names a call of the compass's own vessel, a firm that the operator plans
+//! with and a day of the call. It moves only for cause, like a confirmed job, and the plan states
+//! the cause.
 
 use crate::port_calls;
 use axum::extract::{FromRef, State};
@@ -35,7 +35,7 @@ where
         .routes(routes!(unpin))
 }
 
-/// A place and day that a person wants for a compass.
+/// Firm, port call and day to fix for a compass.
 #[derive(Clone, Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NewPin, example = json!({
@@ -47,11 +47,11 @@ where
 struct NewPin {
     /// The compass.
     compass_id: CompassId,
-    /// At this call of its vessel.
+    /// Port call of its vessel.
     call_id: CallId,
-    /// By this firm.
+    /// The firm.
     firm_id: FirmId,
-    /// On this day, in the port's time.
+    /// The day, in the port's time.
     day: NaiveDate,
     /// Note, such as the reason.
     #[schema(max_length = 200)]
@@ -66,11 +66,11 @@ pub(super) struct Pin {
     pub(super) vessel_id: VesselId,
     /// The compass.
     pub(super) compass_id: CompassId,
-    /// At this call.
+    /// The port call.
     pub(super) call_id: CallId,
-    /// By this firm.
+    /// The firm.
     pub(super) firm_id: FirmId,
-    /// On this day.
+    /// The day.
     pub(super) day: NaiveDate,
     /// Note, such as the reason.
     #[schema(required)]
@@ -84,11 +84,11 @@ pub(super) struct Pin {
 /// All pins.
 #[derive(Serialize, ToSchema)]
 struct PinList {
-    /// By vessel and compass.
+    /// Pins, in order of vessel and compass.
     items: Vec<Pin>,
 }
 
-/// List what is pinned in the schedule
+/// List the schedule's pins
 #[utoipa::path(get, path = "/schedule/pins", tag = "adjusting",
     responses((status = 200, body = PinList), (status = 401, body = Problem)))]
 async fn list_pins(State(app): State<App>, reader: Reader) -> Result<Json<PinList>> {
@@ -98,12 +98,12 @@ async fn list_pins(State(app): State<App>, reader: Reader) -> Result<Json<PinLis
 
 /// Pin a compass's job in the schedule
 ///
-/// In place of an earlier pin of the compass. It moves only for cause: where the call is
-/// withdrawn, say, or the firm cannot.
+/// Replaces an earlier pin of the compass. The job moves only for cause, for example when the call
+/// is withdrawn or the firm has no team.
 #[utoipa::path(post, path = "/schedule/pins", tag = "adjusting", request_body = NewPin,
     responses((status = 200, body = Pin), (status = 401, body = Problem),
               (status = 403, body = Problem),
-              (status = 404, description = "Compass, call or firm are not there", body = Problem),
+              (status = 404, description = "Compass, call or firm not found", body = Problem),
               (status = 422, body = Problem)))]
 async fn pin(
     State(app): State<App>,
@@ -112,9 +112,9 @@ async fn pin(
     Valid(new): Valid<NewPin>,
 ) -> Result<Json<Pin>> {
     let now: Time = app.clock.now().into();
-    let vessel = vessel_of(&app.db, writer.operator, new.compass_id).await?;
+    let vessel = find_vessel(&app.db, writer.operator, new.compass_id).await?;
     let vessel = vessel.ok_or(Error::NotFound("compass"))?;
-    let calls = port_calls::ahead(&app.db, writer.operator, now).await?;
+    let calls = port_calls::upcoming_of_fleet(&app.db, writer.operator, now).await?;
     let mut calls = calls.iter().filter(|call| call.vessel_id == vessel);
     let call = calls.find(|call| call.id == new.call_id);
     let call = call.ok_or(Error::NotFound("port call"))?.content()?;
@@ -139,7 +139,7 @@ async fn pin(
     if let Some(problem) = terms.problems().first() {
         return Err(Error::Invalid {
             field: "firm_id",
-            detail: format!("the schedule leaves {name} out: {problem}"),
+            detail: format!("the schedule cannot plan with {name}: {problem}"),
         });
     }
     let note = optional_text("note", new.note.as_deref())?;
@@ -154,13 +154,13 @@ async fn pin(
         created_at: now,
         created_by: session::name_of(&mut tx, writer.user).await?,
     };
-    put(&mut tx, &pin).await?;
-    super::store::ask(&mut tx, writer.operator, now).await?;
+    store_pin(&mut tx, &pin).await?;
+    super::store::request_schedule(&mut tx, writer.operator, now).await?;
     tx.commit().await?;
     Ok(Json(pin))
 }
 
-/// Let a compass's job go where it is best
+/// Remove the pin of a compass
 #[utoipa::path(delete, path = "/schedule/pins/{compass}", tag = "adjusting",
     params(("compass" = CompassId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
@@ -171,7 +171,7 @@ async fn unpin(
     writer: Writer,
     Id(compass): Id<CompassId>,
 ) -> Result<StatusCode> {
-    let vessel = vessel_of(&app.db, writer.operator, compass).await?;
+    let vessel = find_vessel(&app.db, writer.operator, compass).await?;
     let vessel = vessel.ok_or(Error::NotFound("pin"))?;
     let mut tx = request.begin().await?;
     let removed = execute!(
@@ -183,12 +183,16 @@ async fn unpin(
     if removed == 0 {
         return Err(Error::NotFound("pin"));
     }
-    super::store::ask(&mut tx, writer.operator, app.clock.now().into()).await?;
+    super::store::request_schedule(&mut tx, writer.operator, app.clock.now().into()).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
-async fn vessel_of(db: &Db, operator: OperatorId, compass: CompassId) -> Result<Option<VesselId>> {
+async fn find_vessel(
+    db: &Db,
+    operator: OperatorId,
+    compass: CompassId,
+) -> Result<Option<VesselId>> {
     let found = row!(
         db,
         (VesselId,),
@@ -201,7 +205,7 @@ async fn vessel_of(db: &Db, operator: OperatorId, compass: CompassId) -> Result<
     Ok(found.map(|(vessel,)| vessel))
 }
 
-async fn put(tx: &mut Tx, pin: &Pin) -> Result<()> {
+async fn store_pin(tx: &mut Tx, pin: &Pin) -> Result<()> {
     execute!(
         tx,
         "INSERT INTO schedule_pins (vessel_id, compass_id, call_id, firm_id, day, note,
@@ -235,7 +239,7 @@ struct Row {
     created_by: String,
 }
 
-/// All pins of a fleet.
+/// Returns all pins of a fleet.
 pub(super) async fn list(db: &Db, operator: OperatorId) -> Result<Vec<Pin>> {
     let found = rows!(
         db,

@@ -1,7 +1,5 @@
-//! A schedule, as it is kept and shown: the solver's answer with everybody's names.
+//! The stored plan: the solver's result with names.
 
-use super::schema::{ChangeKindSchema, HeadingSchema, JobStateSchema, WeighedSchema};
-use crate::needs::UrgencySchema;
 use binnacle_platform::ids::{CallId, CompassId, FirmId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_schedule::calls::BerthHeading;
@@ -13,36 +11,36 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// Reason for leaving out a firm without terms, which may hold orders all the same.
-pub(super) const NO_TERMS: &str = "nobody has said on what terms it works";
+pub(super) const NO_TERMS: &str = "its terms are not set";
 
 /// Plan of a fleet: jobs, their quality, and the needs that could not be met.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = SchedulePlan)]
 pub struct Plan {
-    /// Counts the operator's plans from 1.
+    /// Version, counted from 1 for each operator.
     pub version: i64,
     /// Time of creation.
     pub solved_at: Time,
-    /// As of when: the begun hour.
+    /// Time of the input, at the start of an hour.
     pub as_of: Time,
     /// Time taken to solve, seconds.
     pub solved_in_s: f64,
-    /// SHA-256 of what it rests on, hexadecimal: the same again makes no new plan.
+    /// SHA-256 of the input, hexadecimal; equal input makes no new plan.
     pub input_sha256: String,
-    /// Cost by the weights, including everything unmet.
+    /// Cost by the weights, including unmet needs.
     pub cost_eur: f64,
     /// Lower bound of the cost of any plan.
     pub bound_eur: f64,
     /// Distance of the cost from the bound, per cent of the cost.
     pub gap_percent: f64,
-    /// Whether the plan is proven optimal.
+    /// `true` when the plan is proven optimal.
     pub proven_optimal: bool,
-    /// Fees and travel that are really paid.
+    /// Fees and travel to be paid.
     pub paid_eur: f64,
-    /// Comparison with the previous plan; none for the first.
+    /// Comparison with the previous plan; `null` for the first.
     #[schema(required)]
     pub against: Option<Against>,
-    /// The jobs, in order of the day.
+    /// Jobs, in order of the day.
     pub jobs: Vec<Job>,
     /// Needs that could not be scheduled, or only late.
     pub unscheduled: Vec<Unscheduled>,
@@ -52,7 +50,7 @@ pub struct Plan {
     pub later: Vec<Later>,
     /// Compasses whose order is under way beside the plan.
     pub under_way: Vec<UnderWay>,
-    /// Firms that it could not plan with.
+    /// Firms that could not be planned with.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -60,87 +58,83 @@ pub struct Plan {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = PlanAgainst)]
 pub struct Against {
-    /// The plan before.
+    /// Version of the previous plan.
     pub version: i64,
-    /// Extra cost by the weights; negative where this plan costs less.
+    /// Extra cost by the weights; negative when this plan costs less.
     pub cost_eur: f64,
-    /// Extra payments.
+    /// Extra fees and travel, euros.
     pub paid_eur: f64,
     /// Number of the previous plan's jobs that moved or were dropped.
     pub moved: usize,
 }
 
-/// A compass that a job is for.
+/// Compass of a job.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = PlannedCompass)]
 pub struct Compass {
     /// The compass.
     pub compass_id: CompassId,
-    /// Its name.
+    /// Name of the compass.
     pub compass_name: String,
 }
 
-/// One job: one visit of a firm to a ship.
+/// Job: one visit of a firm to a vessel.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = PlannedJob)]
 pub struct Job {
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Name of the vessel.
     pub vessel_name: String,
     /// The compasses to adjust.
     pub compasses: Vec<Compass>,
-    /// At which call.
+    /// The port call.
     pub call_id: CallId,
-    /// UN/LOCODE of its port.
+    /// UN/LOCODE of the port.
     #[schema(example = "NLRTM")]
     pub port: String,
-    /// The port's name.
+    /// Name of the port.
     pub port_name: String,
-    /// The berth, where it is known.
+    /// The berth, where known.
     #[schema(required)]
     pub berth: Option<String>,
-    /// Her heading alongside, where it is known or learnt.
-    #[schema(required, value_type = Option<HeadingSchema>)]
+    /// Heading of the vessel alongside, where known or learnt.
+    #[schema(required)]
     pub berth_heading: Option<BerthHeading>,
-    /// By which firm.
+    /// The firm.
     pub firm_id: FirmId,
-    /// Its name.
+    /// Name of the firm.
     pub firm_name: String,
-    /// On which day, in the port's time.
+    /// The day, in the port's time.
     pub day: NaiveDate,
     /// Start of the window in which the vessel is alongside and the firm works.
     pub from: Time,
-    /// Until when.
+    /// End of that window.
     pub to: Time,
     /// State of the job.
-    #[schema(value_type = JobStateSchema)]
     pub state: JobState,
-    /// Whether a person pinned it.
+    /// `true` when a person pinned it.
     pub pinned: bool,
-    /// The orders by which it is offered or agreed, one for each compass.
+    /// Work orders of the job, one for each compass that is offered or agreed.
     pub orders: Vec<OrderId>,
-    /// Orders under way that say something else: they are to be cancelled, or moved by
-    /// agreement, before this can be offered. Those that every firm declined are cancelled
-    /// when it is.
+    /// Orders under way with another firm, call or day: to be cancelled, or moved by agreement,
+    /// before the job can be offered. Offering it cancels those that every firm declined.
     pub instead_of: Vec<OrderId>,
-    /// The last day on which it would be in time.
+    /// Due date.
     pub due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
     /// Reason of the due date.
     pub reason: String,
-    /// Days after the due date.
+    /// Number of days after the due date.
     pub late_days: i64,
-    /// The chance that she is not there, 0 to 1.
+    /// Probability that the vessel is not there, 0 to 1.
     pub chance_of_missing: f64,
-    /// The firm's fee, euros.
+    /// Fee of the firm, euros.
     pub fee_eur: f64,
-    /// Its part of the team's travel, euros.
+    /// Share of the team's travel, euros.
     pub travel_eur: f64,
     /// Other terms of the cost.
-    #[schema(value_type = WeighedSchema)]
     pub weighed: Weighed,
 }
 
@@ -150,22 +144,21 @@ pub struct Job {
 pub struct Unscheduled {
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Name of the vessel.
     pub vessel_name: String,
     /// The compasses.
     pub compasses: Vec<Compass>,
     /// Due date.
     pub due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
     /// Reason of the due date.
     pub reason: String,
-    /// Orders under way that firms are asked for or hold though nothing is planned: to be
-    /// cancelled, or moved by agreement.
+    /// Orders that are offered or accepted though no job is planned: to be cancelled, or moved by
+    /// agreement.
     #[serde(default)]
     pub orders: Vec<OrderId>,
-    /// Whether it is in the plan, after the due date.
+    /// `true` when it is in the plan after the due date.
     pub planned_late: bool,
     /// Reasons why it could not be scheduled in time.
     pub because: Vec<String>,
@@ -179,12 +172,11 @@ pub struct Unscheduled {
 pub struct Change {
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Name of the vessel.
     pub vessel_name: String,
     /// The compasses.
     pub compasses: Vec<Compass>,
     /// Kind of change.
-    #[schema(value_type = ChangeKindSchema)]
     pub what: ChangeKind,
     /// Previous place.
     #[schema(required)]
@@ -200,28 +192,28 @@ pub struct Change {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = PlanPlace)]
 pub struct Place {
-    /// At which call.
+    /// The port call.
     pub call_id: CallId,
-    /// The port's name; empty where the call is not known any more.
+    /// Name of the port; empty when the call is no longer known.
     pub port_name: String,
-    /// By which firm.
+    /// The firm.
     pub firm_id: FirmId,
-    /// Its name.
+    /// Name of the firm.
     pub firm_name: String,
-    /// On which day.
+    /// The day.
     pub day: NaiveDate,
-    /// Fee and travel, euros; none where no plan had it so.
+    /// Fee and travel, euros; `null` when no plan had this job.
     #[schema(required)]
     pub paid_eur: Option<f64>,
 }
 
-/// A compass that is due after the horizon.
+/// Compass that is due after the horizon.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = LaterNeed)]
 pub struct Later {
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Name of the vessel.
     pub vessel_name: String,
     /// The compass.
     #[serde(flatten)]
@@ -232,13 +224,13 @@ pub struct Later {
     pub reason: String,
 }
 
-/// A compass whose order is under way beside the plan.
+/// Compass whose order is under way beside the plan.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = NeedUnderWay)]
 pub struct UnderWay {
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Name of the vessel.
     pub vessel_name: String,
     /// The compass.
     #[serde(flatten)]
@@ -249,20 +241,32 @@ pub struct UnderWay {
     pub why: String,
 }
 
-/// A firm that could not be planned with.
+/// Firm that could not be planned with.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = FirmLeftOut)]
 pub struct LeftOut {
     /// The firm.
     pub firm_id: FirmId,
-    /// Its name.
+    /// Name of the firm.
     pub firm_name: String,
     /// Reason.
     pub why: String,
 }
 
 impl Plan {
-    /// The job that adjusts a compass.
+    /// Returns the vessels whose jobs differ from the previous plan, each once.
+    pub(super) fn changed_vessels(&self) -> Vec<VesselId> {
+        let changes = self.changes.iter();
+        let mut vessels: Vec<VesselId> = changes
+            .filter(|change| change.what != ChangeKind::Kept)
+            .map(|change| change.vessel_id)
+            .collect();
+        vessels.sort_unstable();
+        vessels.dedup();
+        vessels
+    }
+
+    /// Returns the job that adjusts a compass.
     pub fn job_of(&self, compass: CompassId) -> Option<&Job> {
         self.jobs.iter().find(|job| job.is_for(compass))
     }

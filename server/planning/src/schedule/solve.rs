@@ -1,11 +1,11 @@
-//! Making a plan: gathered, solved on a blocking thread with no transaction open, kept.
+//! Making of a plan: input loaded, solved on a blocking thread without a transaction, stored.
 //!
-//! What always holds: a plan is kept as the next version after the one that it was made
-//! from, or not at all; who comes second gathers and solves anew.
+//! What always holds: a plan is stored as the next version after the one in its input, or not at
+//! all. Of two concurrent solvers the second loads and solves again.
 
-use super::at_risk::{aside, at_risk};
+use super::at_risk::{add_orders_beside_plan, find_jobs_at_risk};
 use super::concurrency::{PlanLock, PlanSlots};
-use super::input::{Agreed, Gathered, Names, load_input};
+use super::input::{Agreed, LoadedInput, Names, load_input};
 use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled};
 use super::store;
 use anyhow::Context;
@@ -30,10 +30,10 @@ use tracing::info;
 use uuid::Uuid;
 
 /// Attempts to store a plan before giving up to concurrent solvers.
-const MOST_TRIES: usize = 5;
+const MAX_ATTEMPTS: usize = 5;
 
-/// Makes the operator's plan anew, or finds that nothing has changed. Whoever asks for it
-/// meanwhile waits for the operator's lock, and takes no slot of other operators'.
+/// Makes a new plan for the operator, or returns the current one if nothing has changed.
+/// Concurrent requests wait for the operator's lock and take no slot from other operators.
 pub(super) async fn solve(
     app: &App,
     request: &RequestContext,
@@ -44,7 +44,7 @@ pub(super) async fn solve(
     solve_locked(app, Some(request), slots, operator, Arc::new(lock)).await
 }
 
-/// Makes the operator's plan anew, unless another task is at it.
+/// Makes a new plan for the operator, unless another task is making one.
 pub(super) async fn solve_unless_busy(
     app: &App,
     slots: &PlanSlots,
@@ -65,60 +65,60 @@ async fn solve_locked(
     operator: OperatorId,
     lock: Arc<PlanLock>,
 ) -> Result<Plan> {
-    for _ in 0..MOST_TRIES {
-        let gathered = load_input(app, operator, &BTreeSet::new()).await?;
-        if let Some(former) = &gathered.former
-            && former.input_sha256 == gathered.sha256
+    for _ in 0..MAX_ATTEMPTS {
+        let loaded = load_input(app, operator, &BTreeSet::new()).await?;
+        if let Some(former) = &loaded.former
+            && former.input_sha256 == loaded.sha256
         {
             let former = former.clone();
-            forget_asks(begin(app, request).await?, operator, &gathered).await?;
+            finish_requests(begin_transaction(app, request).await?, operator, &loaded).await?;
             return Ok(former);
         }
         let begun = Instant::now();
-        let (schedule, gathered) = settled(app, slots, operator, gathered, &lock).await?;
+        let (schedule, loaded) = solve_with_held_teams(app, slots, operator, loaded, &lock).await?;
         let took_s = begun.elapsed().as_secs_f64();
         histogram!("binnacle_schedule_seconds").record(took_s);
-        let plan = named(schedule, &gathered, app.clock.now().into(), took_s)?;
-        let tx = begin(app, request).await?;
-        if keep(app, tx, operator, &plan, &gathered).await? {
+        let plan = build_plan(schedule, &loaded, app.clock.now().into(), took_s)?;
+        let tx = begin_transaction(app, request).await?;
+        if store_plan(app, tx, operator, &plan, &loaded).await? {
             info!(%operator, version = plan.version, took_s, gap_percent = plan.gap_percent,
-                  "a schedule was made");
+                  "schedule made");
             return Ok(plan);
         }
     }
     Err(Error::WrongState(
-        "others make the schedule at the same time; try again".to_owned(),
+        "the schedule is being made by others; try again".to_owned(),
     ))
 }
 
 /// Begins a transaction, which carries the audit line of the request that asks for the plan.
-async fn begin(app: &App, request: Option<&RequestContext>) -> Result<Tx> {
+async fn begin_transaction(app: &App, request: Option<&RequestContext>) -> Result<Tx> {
     Ok(match request {
         Some(request) => request.begin().await?,
         None => app.db.begin().await?,
     })
 }
 
-/// The plan in which an order that a job was moved away from holds its team still, as it does
-/// until somebody cancels it; and what that plan was made from.
-async fn settled(
+/// Solves until every order whose job has moved still holds its team, which it does until it is
+/// cancelled. Returns the schedule and its input.
+async fn solve_with_held_teams(
     app: &App,
     slots: &PlanSlots,
     operator: OperatorId,
-    mut gathered: Gathered,
+    mut loaded: LoadedInput,
     lock: &Arc<PlanLock>,
-) -> Result<(Schedule, Gathered)> {
+) -> Result<(Schedule, LoadedInput)> {
     let mut moved = BTreeSet::new();
-    let mut schedule = run(slots, gathered.text.clone(), lock).await?;
+    let mut schedule = run_solver(slots, loaded.text.clone(), lock).await?;
     loop {
-        let more = moved_away(&schedule, &gathered)?;
+        let more = orders_moved_away(&schedule, &loaded)?;
         if more.is_empty() {
-            return Ok((schedule, gathered));
+            return Ok((schedule, loaded));
         }
         moved.extend(more);
-        gathered = load_input(app, operator, &moved).await?;
-        let mut next = run(slots, gathered.text.clone(), lock).await?;
-        // Why a job moved is what moved it first, not that its order is in its way now.
+        loaded = load_input(app, operator, &moved).await?;
+        let mut next = run_solver(slots, loaded.text.clone(), lock).await?;
+        // The reason of a move is the first one, not the team that its own order holds now.
         for change in &mut next.changes {
             let mut known = schedule.changes.iter();
             let known = known.find(|known| {
@@ -132,38 +132,41 @@ async fn settled(
     }
 }
 
-/// Orders whose compass a plan does not have with their firm on their day.
-fn moved_away(schedule: &Schedule, gathered: &Gathered) -> Result<Vec<OrderId>> {
+/// Returns the orders whose compass the plan has with another firm or on another day.
+fn orders_moved_away(schedule: &Schedule, loaded: &LoadedInput) -> Result<Vec<OrderId>> {
     let mut planned = BTreeMap::new();
     for job in &schedule.jobs {
         for need in &job.needs {
-            planned.insert(CompassId(id(need)?), (FirmId(id(&job.firm)?), job.day));
+            planned.insert(
+                CompassId(parse_id(need)?),
+                (FirmId(parse_id(&job.firm)?), job.day),
+            );
         }
     }
-    let agreed = gathered.names.agreed.iter();
+    let agreed = loaded.names.agreed.iter();
     let moved = agreed
-        .filter(|(_, agreed)| gathered.held.contains_key(&agreed.order_id))
+        .filter(|(_, agreed)| loaded.teams_left_to_plan.contains_key(&agreed.order_id))
         .filter(|(compass, agreed)| planned.get(*compass) != Some(&(agreed.firm_id, agreed.day)));
     Ok(moved.map(|(_, agreed)| agreed.order_id).collect())
 }
 
-/// Forgets what asked, for an operator that has no firms to plan with.
-pub(super) async fn forget_asks(
+/// Deletes the requests in the input, which need no new plan.
+pub(super) async fn finish_requests(
     mut tx: Tx,
     operator: OperatorId,
-    gathered: &Gathered,
+    loaded: &LoadedInput,
 ) -> Result<()> {
-    store::answered(&mut tx, operator, &gathered.asks).await?;
+    store::delete_requests(&mut tx, operator, &loaded.requests).await?;
     tx.commit().await?;
     Ok(())
 }
 
-async fn run(slots: &PlanSlots, text: String, lock: &Arc<PlanLock>) -> Result<Schedule> {
+async fn run_solver(slots: &PlanSlots, text: String, lock: &Arc<PlanLock>) -> Result<Schedule> {
     let slot = slots.acquire().await?;
-    // A request that is given up leaves its plan at work, which keeps the lock until it ends.
+    // The solver of an abandoned request keeps the lock until it ends.
     let lock = Arc::clone(lock);
     let done = tokio::task::spawn_blocking(move || {
-        let checked = read(&text).context("what was gathered does not hang together")?;
+        let checked = read(&text).context("the loaded input is invalid")?;
         let schedule = plan(&checked);
         drop((slot, lock));
         anyhow::Ok(schedule)
@@ -171,56 +174,57 @@ async fn run(slots: &PlanSlots, text: String, lock: &Arc<PlanLock>) -> Result<Sc
     Ok(done.await??)
 }
 
-async fn keep(
+/// Stores a plan with its alerts and events; false when another solver was faster.
+async fn store_plan(
     app: &App,
     mut tx: Tx,
     operator: OperatorId,
     plan: &Plan,
-    gathered: &Gathered,
+    loaded: &LoadedInput,
 ) -> Result<bool> {
-    if !store::keep(&mut tx, operator, plan, &gathered.text).await? {
+    if !store::insert(&mut tx, operator, plan, &loaded.text).await? {
         return Ok(false);
     }
-    store::answered(&mut tx, operator, &gathered.asks).await?;
-    for agreed in gathered.names.agreed.values() {
+    store::delete_requests(&mut tx, operator, &loaded.requests).await?;
+    for agreed in loaded.names.agreed.values() {
         let (vessel, order, call) = (agreed.vessel_id, agreed.order_id, agreed.call_id);
         dispatch::link_once(&mut tx, vessel, order, call).await?;
     }
-    let mut wanted = at_risk(plan, &gathered.names);
-    let not_told = aside(plan, gathered, &mut wanted);
-    let mut told =
-        alerts::reconcile_jobs_at_risk(&mut tx, operator, &wanted, &not_told, plan.solved_at)
+    let mut at_risk = find_jobs_at_risk(plan, &loaded.names);
+    let unknown = add_orders_beside_plan(plan, loaded, &mut at_risk);
+    let mut pending =
+        alerts::reconcile_jobs_at_risk(&mut tx, operator, &at_risk, &unknown, plan.solved_at)
             .await?;
-    for vessel in store::told(plan) {
+    for vessel in plan.changed_vessels() {
         let kind = events::Kind::Schedule;
-        told.push(events::insert(&mut tx, vessel, kind, plan.solved_at).await?);
+        pending.push(events::insert(&mut tx, vessel, kind, plan.solved_at).await?);
     }
     tx.commit().await?;
-    for event in told {
+    for event in pending {
         app.publish(event);
     }
     Ok(true)
 }
 
-/// The solver's answer with everybody's names.
-fn named(schedule: Schedule, gathered: &Gathered, now: Time, took_s: f64) -> Result<Plan> {
-    let names = &gathered.names;
-    let former = gathered.former.as_ref();
+/// Builds the plan from the solver's result, with names.
+fn build_plan(schedule: Schedule, loaded: &LoadedInput, now: Time, took_s: f64) -> Result<Plan> {
+    let names = &loaded.names;
+    let former = loaded.former.as_ref();
     let jobs: Result<Vec<Job>> = schedule
         .jobs
         .into_iter()
-        .map(|one| job(one, names))
+        .map(|one| build_job(one, names))
         .collect();
     let jobs = jobs?;
     let changes: Result<Vec<Change>> = schedule
         .changes
         .into_iter()
-        .map(|one| change(one, names, &jobs, former))
+        .map(|one| build_change(one, names, &jobs, former))
         .collect();
     let changes = changes?;
     let unscheduled = schedule.unscheduled.into_iter().map(|one| {
-        let compasses = compasses(&one.needs, names)?;
-        let (vessel_id, vessel_name) = vessel(&compasses, names);
+        let compasses = name_compasses(&one.needs, names)?;
+        let (vessel_id, vessel_name) = find_vessel(&compasses, names);
         Ok(Unscheduled {
             orders: orders_of(&compasses, names, |_| !one.planned_late),
             vessel_id,
@@ -236,8 +240,8 @@ fn named(schedule: Schedule, gathered: &Gathered, now: Time, took_s: f64) -> Res
     });
     let unscheduled: Result<Vec<Unscheduled>> = unscheduled.collect();
     let later = schedule.later.into_iter().map(|one| {
-        let compass = names.compass(CompassId(id(&one.need)?));
-        let (vessel_id, vessel_name) = vessel(std::slice::from_ref(&compass), names);
+        let compass = names.compass(CompassId(parse_id(&one.need)?));
+        let (vessel_id, vessel_name) = find_vessel(std::slice::from_ref(&compass), names);
         Ok(Later {
             vessel_id,
             vessel_name,
@@ -252,16 +256,16 @@ fn named(schedule: Schedule, gathered: &Gathered, now: Time, took_s: f64) -> Res
         .filter(|change| matches!(change.what, ChangeKind::Moved | ChangeKind::Dropped));
     let against = former.map(|former| Against {
         version: former.version,
-        cost_eur: rounded(schedule.cost_eur - former.cost_eur),
-        paid_eur: rounded(schedule.paid_eur - former.paid_eur),
+        cost_eur: round_cents(schedule.cost_eur - former.cost_eur),
+        paid_eur: round_cents(schedule.paid_eur - former.paid_eur),
         moved: moved.count(),
     });
     Ok(Plan {
         version: former.map_or(0, |former| former.version) + 1,
         solved_at: now,
-        as_of: gathered.as_of,
-        solved_in_s: rounded(took_s),
-        input_sha256: gathered.sha256.clone(),
+        as_of: loaded.as_of,
+        solved_in_s: round_cents(took_s),
+        input_sha256: loaded.sha256.clone(),
         cost_eur: schedule.cost_eur,
         bound_eur: schedule.bound_eur,
         gap_percent: schedule.gap_percent,
@@ -272,15 +276,15 @@ fn named(schedule: Schedule, gathered: &Gathered, now: Time, took_s: f64) -> Res
         unscheduled: unscheduled?,
         changes,
         later: later?,
-        under_way: gathered.under_way.clone(),
-        left_out: gathered.left_out.clone(),
+        under_way: loaded.under_way.clone(),
+        left_out: loaded.left_out.clone(),
     })
 }
 
-fn job(one: solved::PlannedJob, names: &Names) -> Result<Job> {
-    let compasses = compasses(&one.needs, names)?;
-    let (vessel_id, vessel_name) = vessel(&compasses, names);
-    let (call_id, firm_id) = (CallId(id(&one.call)?), FirmId(id(&one.firm)?));
+fn build_job(one: solved::PlannedJob, names: &Names) -> Result<Job> {
+    let compasses = name_compasses(&one.needs, names)?;
+    let (vessel_id, vessel_name) = find_vessel(&compasses, names);
+    let (call_id, firm_id) = (CallId(parse_id(&one.call)?), FirmId(parse_id(&one.firm)?));
     let here = |agreed: &Agreed| {
         (agreed.call_id, agreed.firm_id, agreed.day) == (call_id, firm_id, one.day)
     };
@@ -299,11 +303,11 @@ fn job(one: solved::PlannedJob, names: &Names) -> Result<Job> {
             .and_then(|call| call.berth.clone()),
         berth_heading: one.berth_heading,
         firm_id,
-        firm_name: names.firm(firm_id),
+        firm_name: names.firm_name(firm_id),
         day: one.day,
         from: Time(one.from.0),
         to: Time(one.to.0),
-        // What a person wants is held as if it were agreed, and is not.
+        // The solver holds a pinned job like a confirmed one; no firm has agreed to it.
         state: match one.state {
             JobState::Confirmed if pinned => JobState::Proposed,
             state => state,
@@ -324,7 +328,7 @@ fn job(one: solved::PlannedJob, names: &Names) -> Result<Job> {
         late_days: one.late_days,
         chance_of_missing: one.chance_of_missing,
         fee_eur: one.fee_eur,
-        travel_eur: rounded(one.travel_eur),
+        travel_eur: round_cents(one.travel_eur),
         weighed: one.weighed,
         compasses,
     })
@@ -344,26 +348,26 @@ fn orders_of(
         .collect()
 }
 
-fn change(
+fn build_change(
     one: solved::Change,
     names: &Names,
     jobs: &[Job],
     former: Option<&Plan>,
 ) -> Result<Change> {
-    let compasses = compasses(&one.needs, names)?;
-    let (vessel_id, vessel_name) = vessel(&compasses, names);
+    let compasses = name_compasses(&one.needs, names)?;
+    let (vessel_id, vessel_name) = find_vessel(&compasses, names);
     let first = compasses.first().map(|compass| compass.compass_id);
     let before = first.and_then(|first| former?.job_of(first));
     let after = first.and_then(|first| jobs.iter().find(|job| job.is_for(first)));
-    // A call that is cancelled has no name any more but what the plan before said.
+    // A cancelled call has its name in the previous plan only.
     let why = match (&one.from, before) {
         (Some(place), Some(job)) => one
             .why
             .replace(&place.call, &format!("at {}", job.port_name)),
         _ => one.why,
     };
-    let from = one.from.map(|place| placed(&place, names, before));
-    let to = one.to.map(|place| placed(&place, names, after));
+    let from = one.from.map(|at| build_place(&at, names, before));
+    let to = one.to.map(|at| build_place(&at, names, after));
     Ok(Change {
         vessel_id,
         vessel_name,
@@ -375,8 +379,8 @@ fn change(
     })
 }
 
-fn placed(place: &solved::Place, names: &Names, job: Option<&Job>) -> Result<Place> {
-    let (call_id, firm_id) = (CallId(id(&place.call)?), FirmId(id(&place.firm)?));
+fn build_place(at: &solved::Place, names: &Names, job: Option<&Job>) -> Result<Place> {
+    let (call_id, firm_id) = (CallId(parse_id(&at.call)?), FirmId(parse_id(&at.firm)?));
     let job = job.filter(|job| (job.call_id, job.firm_id) == (call_id, firm_id));
     let known = names.calls.get(&call_id).map(|call| call.port.as_str());
     let port = known.or(job.map(|job| job.port.as_str()));
@@ -388,22 +392,22 @@ fn placed(place: &solved::Place, names: &Names, job: Option<&Job>) -> Result<Pla
             .map_or("", |port| port.name)
             .to_owned(),
         firm_id,
-        firm_name: names.firm(firm_id),
-        day: place.day,
+        firm_name: names.firm_name(firm_id),
+        day: at.day,
         paid_eur: job
-            .filter(|job| job.day == place.day)
-            .map(|job| rounded(job.fee_eur + job.travel_eur)),
+            .filter(|job| job.day == at.day)
+            .map(|job| round_cents(job.fee_eur + job.travel_eur)),
     })
 }
 
-fn compasses(needs: &[String], names: &Names) -> Result<Vec<Compass>> {
+fn name_compasses(needs: &[String], names: &Names) -> Result<Vec<Compass>> {
     let named = needs
         .iter()
-        .map(|need| Ok(names.compass(CompassId(id(need)?))));
+        .map(|need| Ok(names.compass(CompassId(parse_id(need)?))));
     named.collect()
 }
 
-fn vessel(compasses: &[Compass], names: &Names) -> (VesselId, String) {
+fn find_vessel(compasses: &[Compass], names: &Names) -> (VesselId, String) {
     let first = compasses.first();
     let known = first.and_then(|first| names.compasses.get(&first.compass_id));
     known.map_or_else(
@@ -412,10 +416,10 @@ fn vessel(compasses: &[Compass], names: &Names) -> (VesselId, String) {
     )
 }
 
-fn id(text: &str) -> Result<Uuid> {
-    Ok(Uuid::from_str(text).context("an id of the schedule's")?)
+fn parse_id(text: &str) -> Result<Uuid> {
+    Ok(Uuid::from_str(text).context("an id in the schedule")?)
 }
 
-fn rounded(value: f64) -> f64 {
+fn round_cents(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }

@@ -1,17 +1,17 @@
-//! Schedules, and what asks for another one, in the database.
+//! Schedules and the requests for new ones in the database.
 
 use super::plan::Plan;
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use binnacle_platform::error::Result;
-use binnacle_platform::ids::{OperatorId, VesselId};
+use binnacle_platform::ids::OperatorId;
 use binnacle_platform::time::Time;
 use uuid::Uuid;
 
 /// Number of plans to keep.
-const KEPT: i64 = 30;
+const KEPT_PLANS: i64 = 30;
 
-/// Says that something has changed on which the schedule rests.
-pub(super) async fn ask(tx: &mut Tx, operator: OperatorId, now: Time) -> DbResult<()> {
+/// Requests a new schedule.
+pub(super) async fn request_schedule(tx: &mut Tx, operator: OperatorId, now: Time) -> DbResult<()> {
     execute!(
         tx,
         "INSERT INTO schedule_asks (operator_id, id, asked_at) VALUES ($1, $2, $3)",
@@ -23,7 +23,7 @@ pub(super) async fn ask(tx: &mut Tx, operator: OperatorId, now: Time) -> DbResul
 }
 
 /// Returns the open requests for a schedule, the oldest first.
-pub(super) async fn asks(db: &Db, operator: OperatorId) -> Result<Vec<(Uuid, Time)>> {
+pub(super) async fn list_requests(db: &Db, operator: OperatorId) -> Result<Vec<(Uuid, Time)>> {
     Ok(rows!(
         db,
         (Uuid, Time),
@@ -32,13 +32,13 @@ pub(super) async fn asks(db: &Db, operator: OperatorId) -> Result<Vec<(Uuid, Tim
     )?)
 }
 
-/// Those who asked have their answer.
-pub(super) async fn answered(
+/// Deletes requests that have been met.
+pub(super) async fn delete_requests(
     tx: &mut Tx,
     operator: OperatorId,
-    asks: &[(Uuid, Time)],
+    requests: &[(Uuid, Time)],
 ) -> DbResult<()> {
-    for (id, _) in asks {
+    for (id, _) in requests {
         execute!(
             &mut *tx,
             "DELETE FROM schedule_asks WHERE operator_id = $1 AND id = $2",
@@ -49,19 +49,23 @@ pub(super) async fn answered(
     Ok(())
 }
 
-/// The current plan.
-pub(super) async fn current(db: &Db, operator: OperatorId) -> Result<Option<Plan>> {
+/// Returns the current plan.
+pub(super) async fn find_current(db: &Db, operator: OperatorId) -> Result<Option<Plan>> {
     let found = row!(
         db,
         (String,),
         "SELECT plan FROM schedules WHERE operator_id = $1 ORDER BY version DESC LIMIT 1",
         operator
     )?;
-    read(found)
+    found.map(|(plan,)| parse(&plan)).transpose()
 }
 
-/// A plan of some version.
-pub(super) async fn find(db: &Db, operator: OperatorId, version: i64) -> Result<Option<Plan>> {
+/// Returns the plan of a version.
+pub(super) async fn find_version(
+    db: &Db,
+    operator: OperatorId,
+    version: i64,
+) -> Result<Option<Plan>> {
     let found = row!(
         db,
         (String,),
@@ -69,16 +73,15 @@ pub(super) async fn find(db: &Db, operator: OperatorId, version: i64) -> Result<
         operator,
         version
     )?;
-    read(found)
+    found.map(|(plan,)| parse(&plan)).transpose()
 }
 
-fn read(found: Option<(String,)>) -> Result<Option<Plan>> {
-    let plan = found.map(|(text,)| serde_json::from_str(&text));
-    Ok(plan.transpose()?)
+fn parse(plan: &str) -> Result<Plan> {
+    Ok(serde_json::from_str(plan)?)
 }
 
 /// Returns the input of the current plan.
-pub(super) async fn input(db: &Db, operator: OperatorId) -> Result<Option<String>> {
+pub(super) async fn find_input(db: &Db, operator: OperatorId) -> Result<Option<String>> {
     let found = row!(
         db,
         (String,),
@@ -88,14 +91,14 @@ pub(super) async fn input(db: &Db, operator: OperatorId) -> Result<Option<String
     Ok(found.map(|(input,)| input))
 }
 
-/// Keeps a plan as the next version; not when there is one of that version already.
-pub(super) async fn keep(
+/// Stores a plan; false when there is one of its version already.
+pub(super) async fn insert(
     tx: &mut Tx,
     operator: OperatorId,
     plan: &Plan,
     input: &str,
 ) -> Result<bool> {
-    let kept = execute!(
+    let inserted = execute!(
         &mut *tx,
         "INSERT INTO schedules (operator_id, version, solved_at, input_sha256, input, plan)
          VALUES ($1, $2, $3, $4, $5, $6)
@@ -111,13 +114,13 @@ pub(super) async fn keep(
         tx,
         "DELETE FROM schedules WHERE operator_id = $1 AND version <= $2",
         operator,
-        plan.version - KEPT
+        plan.version - KEPT_PLANS
     )?;
-    Ok(kept > 0)
+    Ok(inserted > 0)
 }
 
 /// Returns the error of the last attempt, if it failed.
-pub(super) async fn last_error(db: &Db, operator: OperatorId) -> Result<Option<String>> {
+pub(super) async fn find_last_error(db: &Db, operator: OperatorId) -> Result<Option<String>> {
     let found = row!(
         db,
         (Option<String>,),
@@ -127,10 +130,10 @@ pub(super) async fn last_error(db: &Db, operator: OperatorId) -> Result<Option<S
     Ok(found.and_then(|(error,)| error))
 }
 
-/// The operator that has waited longest for a schedule asked for before a time.
-pub(super) async fn longest_waiting(
+/// Returns the operator with the oldest request made before a time.
+pub(super) async fn find_longest_waiting(
     db: &Db,
-    asked_before: Time,
+    requested_before: Time,
     now: Time,
 ) -> Result<Option<OperatorId>> {
     let found = row!(
@@ -141,14 +144,14 @@ pub(super) async fn longest_waiting(
          WHERE a.asked_at <= $1 AND (r.lease_until IS NULL OR r.lease_until <= $2)
          ORDER BY a.asked_at, a.id
          LIMIT 1",
-        asked_before,
+        requested_before,
         now
     )?;
     Ok(found.map(|(operator,)| operator))
 }
 
-/// Operators whose plan was made before a time.
-pub(super) async fn outdated(db: &Db, before: Time) -> Result<Vec<OperatorId>> {
+/// Returns the operators without a request whose plan was made before a time.
+pub(super) async fn list_outdated(db: &Db, before: Time) -> Result<Vec<OperatorId>> {
     let found = rows!(
         db,
         (OperatorId,),
@@ -162,8 +165,8 @@ pub(super) async fn outdated(db: &Db, before: Time) -> Result<Vec<OperatorId>> {
     Ok(found.into_iter().map(|(operator,)| operator).collect())
 }
 
-/// Takes an operator's schedule for oneself; the count of tries, or none where another
-/// has it.
+/// Claims an operator's schedule under a lease. Returns the number of attempts; `None` when another
+/// process has it.
 pub(super) async fn claim(
     db: &Db,
     operator: OperatorId,
@@ -187,34 +190,42 @@ pub(super) async fn claim(
     Ok(claimed.map(|(attempts,)| attempts))
 }
 
-/// Leaves it: nothing went wrong, or what did, and until when to leave it alone.
-pub(super) async fn leave(
+/// Failed attempt at a schedule.
+pub(super) struct Failure {
+    /// The error.
+    pub(super) error: String,
+    /// Time of the next attempt.
+    pub(super) retry_at: Time,
+}
+
+/// Ends the lease on an operator's schedule after an attempt.
+pub(super) async fn release(
     db: &Db,
     operator: OperatorId,
-    failed: Option<(&str, Time)>,
+    failure: Option<&Failure>,
 ) -> Result<()> {
     let mut tx = db.begin().await?;
-    match failed {
+    match failure {
         None => execute!(
             &mut tx,
             "UPDATE schedule_runs SET lease_until = 0, attempts = 0, last_error = NULL
              WHERE operator_id = $1",
             operator
         )?,
-        Some((error, until)) => execute!(
+        Some(failure) => execute!(
             &mut tx,
             "UPDATE schedule_runs SET lease_until = $2, last_error = $3 WHERE operator_id = $1",
             operator,
-            until,
-            error
+            failure.retry_at,
+            failure.error.as_str()
         )?,
     };
     tx.commit().await?;
     Ok(())
 }
 
-/// Leaves it alone until a time, for somebody else is at it.
-pub(super) async fn put_off(db: &Db, operator: OperatorId, until: Time) -> Result<()> {
+/// Postpones an operator's schedule, which another task is making.
+pub(super) async fn postpone(db: &Db, operator: OperatorId, until: Time) -> Result<()> {
     let mut tx = db.begin().await?;
     execute!(
         &mut tx,
@@ -226,8 +237,8 @@ pub(super) async fn put_off(db: &Db, operator: OperatorId, until: Time) -> Resul
     Ok(())
 }
 
-/// An operator's versions, the newest first: version, when, and the plan.
-pub(super) async fn versions(
+/// Returns a page of an operator's plans, the newest first.
+pub(super) async fn list(
     db: &Db,
     operator: OperatorId,
     before: Option<i64>,
@@ -243,19 +254,5 @@ pub(super) async fn versions(
         before.unwrap_or(i64::MAX),
         limit
     )?;
-    let read = |(text,): (String,)| Ok(serde_json::from_str(&text)?);
-    found.into_iter().map(read).collect()
-}
-
-/// Vessels of an operator's among some.
-pub(super) fn told(plan: &Plan) -> Vec<VesselId> {
-    use binnacle_schedule::plan::ChangeKind;
-    let changes = plan.changes.iter();
-    let mut told: Vec<VesselId> = changes
-        .filter(|change| change.what != ChangeKind::Kept)
-        .map(|change| change.vessel_id)
-        .collect();
-    told.sort_unstable();
-    told.dedup();
-    told
+    found.iter().map(|(plan,)| parse(plan)).collect()
 }

@@ -1,4 +1,4 @@
-//! Handlers of events that the schedule depends on: each asks for a new schedule.
+//! Handlers of events that change the schedule's input: each requests a new schedule.
 
 use super::store;
 use binnacle_fleet::particulars::ParticularsChanged;
@@ -9,41 +9,41 @@ use binnacle_platform::error::Result;
 use binnacle_platform::events::{EventStored, Kind};
 use futures_util::future::BoxFuture;
 
-/// Asks for a new schedule after an event of a vessel that a schedule rests on.
+/// Requests a new schedule after an event of a vessel that changes the input.
 pub fn on_vessel_event<'a>(tx: &'a mut Tx, stored: &'a EventStored) -> BoxFuture<'a, Result<()>> {
     Box::pin(async move {
         let event = &stored.event;
-        // A firm's copy of an event alters nothing more.
-        if event.firm_id.is_none() && alters_the_schedule(event.kind) {
-            store::ask(tx, event.operator_id, stored.at).await?;
+        // A firm's copy of an event changes nothing more.
+        if event.firm_id.is_none() && changes_input(event.kind) {
+            store::request_schedule(tx, event.operator_id, stored.at).await?;
         }
         Ok(())
     })
 }
 
-/// Asks for a new schedule when a vessel goes out of service or comes back.
+/// Requests a new schedule when a vessel leaves or enters service.
 pub fn on_service_change<'a>(
     tx: &'a mut Tx,
     change: &'a ServiceChanged,
 ) -> BoxFuture<'a, Result<()>> {
-    Box::pin(async move { Ok(store::ask(tx, change.operator, change.at).await?) })
+    Box::pin(async move { Ok(store::request_schedule(tx, change.operator, change.at).await?) })
 }
 
-/// Asks for a new schedule when an operator has other terms with a firm.
+/// Requests a new schedule when an operator's terms with a firm change.
 pub fn on_terms_change<'a>(tx: &'a mut Tx, change: &'a TermsChanged) -> BoxFuture<'a, Result<()>> {
-    Box::pin(async move { Ok(store::ask(tx, change.operator, change.at).await?) })
+    Box::pin(async move { Ok(store::request_schedule(tx, change.operator, change.at).await?) })
 }
 
-/// Asks for a new schedule when rules ask something else of a vessel.
+/// Requests a new schedule when the particulars of a vessel change.
 pub fn on_particulars_change<'a>(
     tx: &'a mut Tx,
     change: &'a ParticularsChanged,
 ) -> BoxFuture<'a, Result<()>> {
-    Box::pin(async move { Ok(store::ask(tx, change.operator, change.at).await?) })
+    Box::pin(async move { Ok(store::request_schedule(tx, change.operator, change.at).await?) })
 }
 
 /// Returns whether a schedule depends on events of this kind.
-fn alters_the_schedule(kind: Kind) -> bool {
+fn changes_input(kind: Kind) -> bool {
     matches!(
         kind,
         Kind::Model | Kind::Logbook | Kind::WorkOrder | Kind::PortCall

@@ -3,7 +3,7 @@
 use super::number_error::NumberError;
 use serde::{Deserialize, Serialize};
 
-/// Limits of a plan.
+/// Limits of a plan; an absent limit takes its default.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[cfg_attr(

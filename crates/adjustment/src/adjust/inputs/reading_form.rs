@@ -12,7 +12,7 @@ use binnacle_compass::angle::{MagneticHeading, TrueHeading, Variation};
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// Magnetometer reading at the berth.
+/// Magnetometer reading at the berth; docs/plan.md explains every field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "openapi", schema(as = BerthReading, example = json!({
@@ -34,9 +34,10 @@ pub struct ReadingForm {
     /// True heading of the vessel, degrees.
     #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 360))]
     pub heading_true_deg: f64,
-    /// Source of that heading.
+    /// Source of that heading: `model_reference`, the gyro or satellite compass of the
+    /// model's fit, or `ashore`.
     pub heading_from: HeadingFrom,
-    /// Standard deviation of the heading, including variation, degrees.
+    /// Standard deviation of the heading, including variation, degrees; 0.5 by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 5))]
     pub heading_sd_deg: Option<f64>,
@@ -44,7 +45,8 @@ pub struct ReadingForm {
     pub forward: f64,
     /// Horizontal field there, starboard positive.
     pub starboard: f64,
-    /// Vertical field there, down positive, if measured.
+    /// Vertical field there, down positive, if measured; without it the heeling magnets
+    /// stay.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub down: Option<f64>,
     /// Unit of all three parts.
@@ -55,20 +57,21 @@ pub struct ReadingForm {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(max_length = 200))]
     pub magnetometer_serial: Option<String>,
-    /// Standard deviation of each part, nT; by default that of the kind, as for the other
-    /// errors.
+    /// Standard deviation of each part, nT; by default that of the kind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 5000))]
     pub field_sd_nt: Option<f64>,
-    /// Relative standard deviation of the magnetometer's scale.
+    /// Relative standard deviation of the magnetometer's scale; by default that of the kind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 0.5))]
     pub scale_sd: Option<f64>,
-    /// Standard deviation of the magnetometer's alignment, degrees.
+    /// Standard deviation of the magnetometer's alignment, degrees; by default that of the
+    /// kind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 5))]
     pub alignment_sd_deg: Option<f64>,
-    /// Standard deviation of the magnetometer's tilt in roll and in pitch, degrees.
+    /// Standard deviation of the magnetometer's tilt in roll and in pitch, degrees; by
+    /// default that of the kind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 4))]
     pub tilt_sd_deg: Option<f64>,

@@ -29,12 +29,26 @@ impl FieldBox {
     }
 }
 
+/// Sine and cosine of a heading.
+#[derive(Clone, Copy)]
+struct Direction {
+    sin: f64,
+    cos: f64,
+}
+
+/// East and north parts of a horizontal field, nT.
+#[derive(Clone, Copy)]
+struct EastNorth {
+    east: f64,
+    north: f64,
+}
+
 /// Headings and their directions, with the model's constant.
 pub(crate) struct HeadingGrid {
-    /// Sine and cosine of the magnetic heading.
-    heading: Vec<(f64, f64)>,
-    /// Sine and cosine of the heading plus the constant, which turns the reading.
-    read: Vec<(f64, f64)>,
+    /// Directions of the magnetic heading.
+    heading: Vec<Direction>,
+    /// Directions of the heading plus the constant, which turns the reading.
+    read: Vec<Direction>,
 }
 
 /// A choice of soft iron in all the waters, to which magnets are added.
@@ -46,7 +60,7 @@ pub(crate) struct Objective<'a> {
 struct WaterField {
     weight: f64,
     /// East and north parts of the field on all headings, without the magnets, nT.
-    fixed: Vec<(f64, f64)>,
+    fixed: Vec<EastNorth>,
 }
 
 impl HeadingGrid {
@@ -54,7 +68,7 @@ impl HeadingGrid {
         let angles = |turned: f64| {
             let step = std::f64::consts::TAU / HEADINGS as f64;
             (0..HEADINGS)
-                .map(|i| (i as f64 * step + turned).sin_cos())
+                .map(|i| Direction::new(i as f64 * step + turned))
                 .collect()
         };
         HeadingGrid {
@@ -81,9 +95,13 @@ impl<'a> Objective<'a> {
                 .iter()
                 .zip(&compass.read)
                 .map(|(heading, read)| {
-                    let earth = [water.h_nt * heading.1, -water.h_nt * heading.0, water.z_nt];
+                    let earth = [
+                        water.h_nt * heading.cos,
+                        -water.h_nt * heading.sin,
+                        water.z_nt,
+                    ];
                     let [x, y, _] = ship.field_at_compass(earth);
-                    east_north(*read, x, y)
+                    EastNorth::on_heading(*read, x, y)
                 });
             WaterField {
                 weight: water.weight / total,
@@ -105,7 +123,7 @@ impl<'a> Objective<'a> {
                     let (one, other) = (water.fixed[i], water.fixed[i + half]);
                     // In the other heading's axes, north and the induced field are turned
                     // by half a circle; b is not, and drops out.
-                    tangent((one.0 + other.0, one.1 + other.1))
+                    one.plus(other).tangent()
                 })
                 .fold(0.0, f64::max)
         })
@@ -116,7 +134,7 @@ impl<'a> Objective<'a> {
     pub(crate) fn worst_deg(&self, b: [f64; 2]) -> f64 {
         self.weighted(|water| {
             let each = water.fixed.iter().zip(&self.compass.read);
-            each.map(|(fixed, read)| tangent(with(*fixed, *read, b)))
+            each.map(|(fixed, read)| with(*fixed, *read, b).tangent())
                 .fold(0.0, f64::max)
         })
     }
@@ -145,27 +163,46 @@ impl<'a> Objective<'a> {
     }
 }
 
-/// Rotates a field in ship axes to its east and north parts on a heading.
-fn east_north((sin, cos): (f64, f64), x: f64, y: f64) -> (f64, f64) {
-    (x * sin + y * cos, x * cos - y * sin)
-}
-
-fn with(fixed: (f64, f64), read: (f64, f64), [x, y]: [f64; 2]) -> (f64, f64) {
-    let (east, north) = east_north(read, x, y);
-    (fixed.0 + east, fixed.1 + north)
-}
-
-/// Returns the tangent of the residual; infinite where the card would turn round.
-fn tangent((east, north): (f64, f64)) -> f64 {
-    if north > 0.0 {
-        east.abs() / north
-    } else {
-        f64::INFINITY
+impl Direction {
+    fn new(radians: f64) -> Direction {
+        let (sin, cos) = radians.sin_cos();
+        Direction { sin, cos }
     }
 }
 
-fn least_tangent(fixed: (f64, f64), read: (f64, f64), within: &FieldBox) -> f64 {
-    let (sin, cos) = read;
+impl EastNorth {
+    /// Rotates a field in ship axes to its east and north parts on a heading.
+    fn on_heading(Direction { sin, cos }: Direction, x: f64, y: f64) -> EastNorth {
+        EastNorth {
+            east: x * sin + y * cos,
+            north: x * cos - y * sin,
+        }
+    }
+
+    fn plus(self, other: EastNorth) -> EastNorth {
+        EastNorth {
+            east: self.east + other.east,
+            north: self.north + other.north,
+        }
+    }
+
+    /// Returns the tangent of the residual; infinite where the card would turn round.
+    fn tangent(self) -> f64 {
+        if self.north > 0.0 {
+            self.east.abs() / self.north
+        } else {
+            f64::INFINITY
+        }
+    }
+}
+
+/// Adds magnets of the field [x, y].
+fn with(fixed: EastNorth, read: Direction, [x, y]: [f64; 2]) -> EastNorth {
+    fixed.plus(EastNorth::on_heading(read, x, y))
+}
+
+fn least_tangent(fixed: EastNorth, read: Direction, within: &FieldBox) -> f64 {
+    let Direction { sin, cos } = read;
     let (mid_x, half_x) = (
         f64::midpoint(within.x[0], within.x[1]),
         (within.x[1] - within.x[0]) / 2.0,
@@ -174,7 +211,7 @@ fn least_tangent(fixed: (f64, f64), read: (f64, f64), within: &FieldBox) -> f64 
         f64::midpoint(within.y[0], within.y[1]),
         (within.y[1] - within.y[0]) / 2.0,
     );
-    let east = fixed.0 + mid_x * sin + mid_y * cos;
+    let east = fixed.east + mid_x * sin + mid_y * cos;
     if east.abs() <= half_x * sin.abs() + half_y * cos.abs() {
         return 0.0;
     }
@@ -182,10 +219,10 @@ fn least_tangent(fixed: (f64, f64), read: (f64, f64), within: &FieldBox) -> f64 
     for x in within.x {
         for y in within.y {
             let corner = with(fixed, read, [x, y]);
-            if corner.1 <= 0.0 {
+            if corner.north <= 0.0 {
                 return 0.0;
             }
-            least = least.min(corner.0.abs() / corner.1);
+            least = least.min(corner.east.abs() / corner.north);
         }
     }
     least

@@ -118,14 +118,17 @@ fn pair(binnacle: &Binnacle, from: &Setting, to: &Setting) -> Vec<Effect> {
             ..Effect::default()
         };
         let name = set.size.clone();
-        Some((name, effect.times(sd), of_needles.times(NEEDLE_SD)))
+        let error = PieceError {
+            piece: name,
+            error: effect.times(sd),
+        };
+        Some((error, of_needles.times(NEEDLE_SD)))
     };
-    let (old, new) = (one(from), one(to));
-    let own = |of: &Option<(String, Effect, Effect)>| of.clone().map(|(name, own, _)| (name, own));
+    let (old, old_needles) = one(from).unzip();
+    let (new, new_needles) = one(to).unzip();
     // The needles stay the same with any soft iron.
-    let needles = [&new, &old].map(|of| of.as_ref().map(|(_, _, needles)| *needles));
-    let [new_needles, old_needles] = needles.map(Option::unwrap_or_default);
-    let mut errors = differing(own(&old), own(&new));
+    let [new_needles, old_needles] = [new_needles, old_needles].map(Option::unwrap_or_default);
+    let mut errors = differing(old, new);
     errors.push(new_needles.less(&old_needles));
     errors
 }
@@ -143,22 +146,32 @@ fn bar(binnacle: &Binnacle, from: &Setting, to: &Setting) -> Vec<Effect> {
         };
         let measured = binnacle.calibrated_bar(set.length_mm);
         let sd = measured.map_or(holder.tolerance, |measured| measured.sd);
-        Some(((), Iron::new(binnacle, &soft).effect(0.0).times(sd)))
+        Some(PieceError {
+            piece: (),
+            error: Iron::new(binnacle, &soft).effect(0.0).times(sd),
+        })
     };
     differing(one(from), one(to))
 }
 
+/// Error of the effect of a piece of soft iron.
+struct PieceError<T> {
+    /// Name of the piece.
+    piece: T,
+    error: Effect,
+}
+
 /// Combines the errors: the difference for the same piece of iron, both for different
 /// pieces.
-fn differing<T: PartialEq>(old: Option<(T, Effect)>, new: Option<(T, Effect)>) -> Vec<Effect> {
+fn differing<T: PartialEq>(old: Option<PieceError<T>>, new: Option<PieceError<T>>) -> Vec<Effect> {
     match (old, new) {
-        (Some((old, old_error)), Some((new, new_error))) if old == new => {
-            vec![new_error.less(&old_error)]
+        (Some(old), Some(new)) if old.piece == new.piece => {
+            vec![new.error.less(&old.error)]
         }
         (old, new) => [old, new]
             .into_iter()
             .flatten()
-            .map(|(_, error)| error)
+            .map(|one| one.error)
             .collect(),
     }
 }

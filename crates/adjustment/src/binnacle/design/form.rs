@@ -4,15 +4,13 @@ use crate::binnacle::axis::Axis;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Written form of a design; [`Design`] is a valid one.
-///
-/// [`Design`]: super::Design
+/// Written form of a binnacle's design; docs/binnacle.md explains every field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "openapi", schema(as = BinnacleDesign))]
 #[serde(deny_unknown_fields)]
 pub struct DesignForm {
-    /// Version of the form.
+    /// Version of the form: 1.
     pub version: u32,
     /// Name of the maker.
     pub maker: String,
@@ -20,7 +18,7 @@ pub struct DesignForm {
     pub model: String,
     /// Source of the figures.
     pub provenance: String,
-    /// Class of its compass.
+    /// Class of its compass by ISO 25862: A, B or neither.
     pub compass: CompassKind,
     /// Magnetic moment of the compass needles, A·m², which magnetise the spheres.
     pub needle_moment_am2: f64,

@@ -5,8 +5,8 @@ use super::evidence::evidence;
 use super::findings::{PossibleAlignment, PossibleEnd, PossibleStart};
 use crate::analyse::logbook_rules::reported_cause;
 use crate::change::{
-    Circumstances, Event, EventKind, PossibleReturn, SAILED_SINCE_ROWS, Snapshot, UndetectedStep,
-    causes, follows_port_call, rows_since,
+    Circumstances, Event, EventKind, PossibleReturn, RowSpan, SAILED_SINCE_ROWS, Snapshot,
+    UndetectedStep, causes, follows_port_call, rows_since,
 };
 use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
@@ -68,7 +68,7 @@ impl EventReporter<'_> {
 
     /// Returns true if any row from which the event may date follows a port call.
     fn began_at_port(&self, event: &Event) -> Option<bool> {
-        let (earliest, latest) = event.between;
+        let RowSpan { earliest, latest } = event.between;
         let calls = (earliest..=latest).map(|row| follows_port_call(self.observations, row));
         calls.reduce(|a, b| Some(a? || b?)).flatten()
     }
@@ -117,7 +117,7 @@ impl EventReporter<'_> {
 
     pub(super) fn report_change(&self, index: usize) -> Change {
         let event = &self.events[index];
-        let (earliest, latest) = event.between;
+        let RowSpan { earliest, latest } = event.between;
         let from = self.date(event.first);
         let from_earliest = self.time(earliest.saturating_sub(1));
         let from_latest = self.time(latest);
@@ -318,7 +318,10 @@ impl EventReporter<'_> {
 
     /// Returns the causes that people reported at about the time of the event.
     fn reported(&self, event: &Event, at_port: Option<bool>) -> Vec<Cause> {
-        let (first, last) = event.between;
+        let RowSpan {
+            earliest: first,
+            latest: last,
+        } = event.between;
         let (earliest, latest) = (self.time(first.saturating_sub(1)), self.time(last));
         // It comes and goes in port, not after hours of sailing.
         let at_the_quay = |time: Timestamp| {
@@ -366,7 +369,7 @@ impl EventReporter<'_> {
 
     /// Returns true if the logbook has cargo discharged, and none loaded, at an event.
     fn is_discharge_logged(&self, event: &Event) -> bool {
-        let (earliest, latest) = event.between;
+        let RowSpan { earliest, latest } = event.between;
         let (earliest, latest) = (self.time(earliest.saturating_sub(1)), self.time(latest));
         let is_then = |time: Timestamp| {
             earliest.seconds_since(time) < LOADED_BEFORE_S

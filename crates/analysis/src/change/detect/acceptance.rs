@@ -2,8 +2,8 @@
 //! recorded.
 
 use super::dating::DatedChange;
-use super::state::{Detector, ExtraDrift, Leads, LearningSchedule};
-use crate::change::event::{Event, EventKind, remove_events, snapshot};
+use super::state::{Detector, ExtraDrift, FilterBefore, Leads, LearningSchedule};
+use crate::change::event::{Event, EventKind, RowSpan, remove_events, snapshot};
 use crate::change::filter::Filter;
 use crate::change::hypotheses::Lead;
 use crate::change::hypothesis_kind::HypothesisKind;
@@ -57,9 +57,9 @@ impl Detector<'_> {
             HypothesisKind::Step => EventKind::Step,
             _ => self
                 .reference_fault
-                .take_if(|(_, before)| dated.filter.agrees_in_constant(before))
-                .map_or(EventKind::ReferenceFault, |(event, _)| {
-                    EventKind::Return(event)
+                .take_if(|fault| dated.filter.agrees_in_constant(&fault.before))
+                .map_or(EventKind::ReferenceFault, |fault| {
+                    EventKind::Return(fault.event)
                 }),
         };
         self.record_event(
@@ -90,7 +90,10 @@ impl Detector<'_> {
             self.replay_port_calls(k, &dated);
         } else {
             if event_kind == EventKind::ReferenceFault && self.reference_fault.is_none() {
-                self.reference_fault = Some((self.events.len() - 1, dated.before));
+                self.reference_fault = Some(FilterBefore {
+                    event: self.events.len() - 1,
+                    before: dated.before,
+                });
             }
             let gained = dated.filter.log_likelihood - self.null.log_likelihood;
             let mut returns = std::mem::take(&mut self.returns);
@@ -111,7 +114,7 @@ impl Detector<'_> {
     }
 
     fn began_at_port_call(&self, dated: &DatedChange) -> bool {
-        let (earliest, latest) = dated.between;
+        let RowSpan { earliest, latest } = dated.between;
         (earliest..=latest).any(|row| self.is_port_call(row))
     }
 
@@ -119,7 +122,8 @@ impl Detector<'_> {
     /// that knows the step.
     pub(crate) fn replay_port_calls(&mut self, k: usize, dated: &DatedChange) {
         let event = self.events.len() - 1;
-        let is_loading_logged = self.is_loading_logged(dated.between.0, dated.between.1);
+        let is_loading_logged =
+            self.is_loading_logged(dated.between.earliest, dated.between.latest);
         let origin = if dated.noticed_late && !is_loading_logged {
             StepOrigin::NoticedLate
         } else if self.began_at_port_call(dated) {
@@ -136,7 +140,7 @@ impl Detector<'_> {
             event,
             filter: dated.before.clone(),
             origin,
-            latest: self.observations[dated.between.1].time,
+            latest: self.observations[dated.between.latest].time,
             port_calls: 0,
         };
         self.returns.add_baseline(base);
@@ -187,8 +191,11 @@ impl Detector<'_> {
         let mut dated = self.date_change(lead.fork, HypothesisKind::Return, k);
         if let Some(call) = self.discharge_near(dated.first, k) {
             // The call is as possible a date.
-            let (earliest, latest) = dated.between;
-            dated.between = (earliest.min(call), latest.max(call));
+            let RowSpan { earliest, latest } = dated.between;
+            dated.between = RowSpan {
+                earliest: earliest.min(call),
+                latest: latest.max(call),
+            };
         }
         self.accept_dated_return(k, lead, dated, leads);
     }
@@ -196,7 +203,7 @@ impl Detector<'_> {
     /// Accepts a return of the vessel, or of the compass's alignment. A change that lasted
     /// hours at sea came from beside the vessel: it becomes a transient.
     fn accept_dated_return(&mut self, k: usize, lead: Lead, dated: DatedChange, leads: Leads) {
-        let zero = self.alignment_change.take().map(|(event, _)| event);
+        let zero = self.alignment_change.take().map(|change| change.event);
         let vessel = || self.returns.baselines.last().map(|base| base.event);
         let Some(event) = zero.or_else(vessel) else {
             return;
@@ -228,7 +235,7 @@ impl Detector<'_> {
         let lasted_s = time(returned.first)
             .zip(time(event.first))
             .map(|(end, begin)| end.seconds_since(begin));
-        let mut rows = event.between.0..=returned.between.1.max(returned.first);
+        let mut rows = event.between.earliest..=returned.between.latest.max(returned.first);
         matches!(event.kind, EventKind::Step | EventKind::Alignment)
             && lasted_s.is_some_and(|s| s < BRIEF_CHANGE_S)
             && !rows.any(|row| self.is_port_call(row))
@@ -242,7 +249,11 @@ impl Detector<'_> {
         let dated = self.date_change(lead.fork, HypothesisKind::Return, k);
         let before = self.bank.forks[lead.fork].origin().clone();
         self.close_transient(dated.first);
-        let Some((event, repaired)) = self.reference_fault.take() else {
+        let Some(FilterBefore {
+            event,
+            before: repaired,
+        }) = self.reference_fault.take()
+        else {
             return;
         };
         let gained = dated.filter.log_likelihood - self.null.log_likelihood;
@@ -282,19 +293,19 @@ impl Detector<'_> {
         };
         let is_removed = |(place, event): (usize, &Event)| {
             let is_past = event.kind == EventKind::Transient || is_reference(event);
-            place > returned.event && !is_past && event.between.1 >= returned.at
+            place > returned.event && !is_past && event.between.latest >= returned.at
         };
         let removed = self.events.iter().enumerate().map(is_removed).collect();
         let moved = remove_events(&mut self.events, removed);
-        if let Some((place, _)) = &mut self.reference_fault {
-            *place = moved(*place);
+        if let Some(fault) = &mut self.reference_fault {
+            fault.event = moved(fault.event);
         }
         let before = self.null.clone();
         self.record_event(
             k,
             EventKind::Return(returned.event),
             returned.at,
-            (returned.at, returned.at),
+            RowSpan::at(returned.at),
             leads,
             Some(FilterChange {
                 before: &before,
@@ -326,7 +337,7 @@ impl Detector<'_> {
         k: usize,
         event_kind: EventKind,
         first: usize,
-        between: (usize, usize),
+        between: RowSpan,
         leads: Leads,
         change: Option<FilterChange<'_>>,
     ) {

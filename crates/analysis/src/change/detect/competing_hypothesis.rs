@@ -5,8 +5,8 @@
 
 use super::dating::DatedChange;
 use super::state::CompetingHypothesis;
-use super::state::{Detector, ExtraDrift, Leads};
-use crate::change::event::{Event, EventKind, remove_events, snapshot};
+use super::state::{Detector, ExtraDrift, FilterBefore, Leads};
+use crate::change::event::{Event, EventKind, RowSpan, remove_events, snapshot};
 use crate::change::filter::{CONSTANT_STATE, Filter, Measurement};
 use crate::change::hypotheses::Fork;
 use crate::change::hypothesis_kind::HypothesisKind;
@@ -102,10 +102,10 @@ impl Detector<'_> {
             event: self.events.len() - 1,
             drift,
             first,
-            between: (
-                row(place.saturating_sub(1)).clamp(1, first),
-                row((place + 1).min(forks.len() - 1)).max(first),
-            ),
+            between: RowSpan {
+                earliest: row(place.saturating_sub(1)).clamp(1, first),
+                latest: row((place + 1).min(forks.len() - 1)).max(first),
+            },
             filter,
             before: forks[place].origin().clone(),
         })
@@ -166,7 +166,9 @@ impl Detector<'_> {
         };
         if with_cargo {
             // Cargo comes on board at once: no drift precedes it.
-            if self.competing[place].first + DRIFT_BEFORE_CARGO_ROWS > self.events[of].between.0 {
+            if self.competing[place].first + DRIFT_BEFORE_CARGO_ROWS
+                > self.events[of].between.earliest
+            {
                 return false;
             }
             threshold += DRIFT_WITH_CARGO_EXTRA_LOG_LIKELIHOOD_RATIO;
@@ -239,7 +241,10 @@ impl Detector<'_> {
         match competitor.kind {
             EventKind::Alignment => {
                 competing.push(replaced);
-                self.alignment_change = Some((of, competitor.before));
+                self.alignment_change = Some(FilterBefore {
+                    event: of,
+                    before: competitor.before,
+                });
             }
             EventKind::Step => self.revert_to_step(&competitor),
             _ => {}
@@ -262,7 +267,7 @@ impl Detector<'_> {
             } else {
                 StepOrigin::AtSea
             },
-            latest: self.observations[step.between.1].time,
+            latest: self.observations[step.between.latest].time,
             port_calls: 0,
         });
     }
@@ -311,8 +316,8 @@ impl Detector<'_> {
             .collect();
         let moved = remove_events(&mut self.events, removed);
         self.transient = self.transient.map(&moved);
-        if let Some((place, _)) = &mut self.reference_fault {
-            *place = moved(*place);
+        if let Some(fault) = &mut self.reference_fault {
+            fault.event = moved(fault.event);
         }
     }
 
@@ -321,7 +326,7 @@ impl Detector<'_> {
     }
 
     fn began_at_port(&self, event: usize) -> bool {
-        let (earliest, latest) = self.events[event].between;
+        let RowSpan { earliest, latest } = self.events[event].between;
         (earliest..=latest).any(|row| self.is_port_call(row))
     }
 

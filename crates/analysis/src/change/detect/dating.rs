@@ -1,7 +1,7 @@
 //! Dating of a change to the row.
 
 use super::state::{Detector, earlier_state};
-use crate::change::event::{Event, EventKind};
+use crate::change::event::{Event, EventKind, RowSpan};
 use crate::change::filter::{Filter, Measurement};
 use crate::change::hypothesis_kind::HypothesisKind;
 use crate::change::jump_models::{apply_jump, apply_reference_step};
@@ -22,7 +22,7 @@ const PORT_CALLS_TRIED: usize = 3;
 /// A dated change.
 pub(crate) struct DatedChange {
     pub(crate) first: usize,
-    pub(crate) between: (usize, usize),
+    pub(crate) between: RowSpan,
     pub(crate) kind: HypothesisKind,
     /// Filters just before the change, and with it, at the present row.
     pub(crate) before: Filter,
@@ -136,7 +136,7 @@ impl Detector<'_> {
         let at_before = linearisation_before(kind, origin.origin(), &filter.unknowns());
         DatedChange {
             first,
-            between: (earliest, latest),
+            between: RowSpan { earliest, latest },
             kind,
             before: self.run_filter(origin.origin().clone(), origin.at..first, &at_before),
             filter,
@@ -222,7 +222,10 @@ impl Detector<'_> {
         let noticed_late = call < origin.at || self.events.iter().any(was_transient_since);
         Some(DatedChange {
             first: call,
-            between: (call.min(row), call.max(row)),
+            between: RowSpan {
+                earliest: call.min(row),
+                latest: call.max(row),
+            },
             kind,
             before,
             filter,

@@ -6,7 +6,7 @@
 //! reference, a return at sea, a step or a reference's fault, a transient.
 
 use super::state::{Detector, Leads};
-use crate::change::event::{Event, EventKind};
+use crate::change::event::{Event, EventKind, RowSpan};
 use crate::change::filter::Filter;
 use crate::change::hypotheses::Lead;
 use crate::change::hypothesis_kind::HypothesisKind;
@@ -143,7 +143,14 @@ impl Detector<'_> {
             self.transient = Some(self.events.len());
             self.before_transient = self.last_fork_before(first);
             self.weak_transient = None;
-            self.record_event(k, EventKind::Transient, first, (first, first), leads, None);
+            self.record_event(
+                k,
+                EventKind::Transient,
+                first,
+                RowSpan::at(first),
+                leads,
+                None,
+            );
         } else {
             self.note_weak_transient(k, leads, transient - lasting);
         }

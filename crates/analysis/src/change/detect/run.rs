@@ -12,7 +12,7 @@ use crate::change::thresholds::{
 };
 
 use crate::change::detection::{Detection, DetectionInput, PossibleReturn};
-use crate::change::event::EventKind;
+use crate::change::event::{EventKind, RowSpan};
 use crate::change::filter::Measurement;
 use crate::change::hypotheses::Lead;
 use crate::change::hypothesis_kind::HypothesisKind;
@@ -201,7 +201,7 @@ impl Detector<'_> {
         let change = filters
             .as_ref()
             .map(|(before, after)| FilterChange { before, after });
-        self.record_event(k, event_kind, first, (first, first), leads, change);
+        self.record_event(k, event_kind, first, RowSpan::at(first), leads, change);
         if let Some(event) = self.events.last_mut() {
             event.confirmed = false;
         }

@@ -2,7 +2,7 @@
 
 use super::state::WeakTransient;
 use super::state::{Detector, Leads};
-use crate::change::event::EventKind;
+use crate::change::event::{EventKind, RowSpan};
 use crate::change::hypotheses::Lead;
 use crate::change::hypothesis_kind::HypothesisKind;
 use crate::change::thresholds::{
@@ -54,7 +54,14 @@ impl Detector<'_> {
             return;
         };
         let WeakTransient { first, last, leads } = weak_transient;
-        self.record_event(k, EventKind::Transient, first, (first, first), leads, None);
+        self.record_event(
+            k,
+            EventKind::Transient,
+            first,
+            RowSpan::at(first),
+            leads,
+            None,
+        );
         if let Some(event) = self.events.last_mut() {
             event.last = Some(last.max(first));
             event.confirmed = false;

@@ -2,7 +2,7 @@
 
 use crate::calls::FileError;
 
-/// The longest unfolded line, in bytes.
+/// Maximum length of an unfolded line, bytes.
 const MAX_LINE_BYTES: usize = 16_384;
 
 /// A content line.
@@ -30,13 +30,13 @@ impl Line {
 /// Splits a text into lines. A line that begins with a blank continues the line
 /// before (RFC 5545, 3.1).
 pub(super) fn lines(text: &str) -> Result<Vec<Line>, FileError> {
-    let mut whole: Vec<(usize, String)> = Vec::new();
+    let mut unfolded: Vec<(usize, String)> = Vec::new();
     for (at, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
-        match (line.strip_prefix([' ', '\t']), whole.last_mut()) {
-            (Some(more), Some((_, begun))) => begun.push_str(more),
-            _ => whole.push((at + 1, line.to_owned())),
+        match (line.strip_prefix([' ', '\t']), unfolded.last_mut()) {
+            (Some(more), Some((_, previous))) => previous.push_str(more),
+            _ => unfolded.push((at + 1, line.to_owned())),
         }
-        if whole
+        if unfolded
             .last()
             .is_some_and(|(_, line)| line.len() > MAX_LINE_BYTES)
         {
@@ -47,15 +47,15 @@ pub(super) fn lines(text: &str) -> Result<Vec<Line>, FileError> {
             ));
         }
     }
-    whole.retain(|(_, line)| !line.trim().is_empty());
-    whole
+    unfolded.retain(|(_, line)| !line.trim().is_empty());
+    unfolded
         .into_iter()
-        .map(|(number, line)| read(number, &line))
+        .map(|(number, line)| parse_line(number, &line))
         .collect()
 }
 
-fn read(number: usize, line: &str) -> Result<Line, FileError> {
-    let Some(colon) = outside_quotes(line, ':').next() else {
+fn parse_line(number: usize, line: &str) -> Result<Line, FileError> {
+    let Some(colon) = positions_outside_quotes(line, ':').next() else {
         let what = format!(
             "{:?} is not a calendar line",
             line.chars().take(40).collect::<String>()
@@ -65,7 +65,7 @@ fn read(number: usize, line: &str) -> Result<Line, FileError> {
     let (head, value) = (&line[..colon], &line[colon + 1..]);
     let mut begins = 0;
     let mut parts = Vec::new();
-    for ends in outside_quotes(head, ';').chain([head.len()]) {
+    for ends in positions_outside_quotes(head, ';').chain([head.len()]) {
         parts.push(&head[begins..ends]);
         begins = ends + 1;
     }
@@ -80,19 +80,19 @@ fn read(number: usize, line: &str) -> Result<Line, FileError> {
         number,
         name: parts[0].trim().to_ascii_uppercase(),
         parameters: parameters.collect(),
-        value: unescaped(value.trim()),
+        value: unescape(value.trim()),
     })
 }
 
-fn outside_quotes(text: &str, wanted: char) -> impl Iterator<Item = usize> {
+fn positions_outside_quotes(text: &str, separator: char) -> impl Iterator<Item = usize> {
     let mut quoted = false;
     text.char_indices().filter_map(move |(at, letter)| {
         quoted ^= letter == '"';
-        (letter == wanted && !quoted).then_some(at)
+        (letter == separator && !quoted).then_some(at)
     })
 }
 
-fn unescaped(value: &str) -> String {
+fn unescape(value: &str) -> String {
     let mut text = String::with_capacity(value.len());
     let mut letters = value.chars();
     while let Some(letter) = letters.next() {

@@ -16,7 +16,7 @@ mod place;
 mod zone;
 
 use super::FileError;
-use super::csv::{MAX_CALLS, must_be_new};
+use super::csv::{MAX_CALLS, check_id};
 use super::{Located, PortCall};
 use crate::time::Instant;
 use binnacle_compass::time::Timestamp;
@@ -70,7 +70,7 @@ pub fn read(text: &str, vessel: &str, now: Instant) -> Result<Calendar, FileErro
                 }
                 match read_event(*begins, own, &zones, vessel, now)? {
                     Event::Call(call) => {
-                        must_be_new(&mut ids, &call, *begins)?;
+                        check_id(&mut ids, &call, *begins)?;
                         let line = *begins;
                         calendar.calls.push(Located { line, call });
                     }
@@ -138,7 +138,7 @@ fn read_event(
         id: needed("UID")?.value.clone(),
         name: None,
         vessel: vessel.to_owned(),
-        port: place::port(begins, &find)?,
+        port: place::find_port(begins, &find)?,
         berth: None,
         eta: arrives,
         eta_uncertainty_h: 0.0,
@@ -146,7 +146,7 @@ fn read_event(
         etd_uncertainty_h: 0.0,
         berth_heading_deg: None,
     };
-    let checked = call.checked(now).and_then(|()| call.must_be_near(now));
+    let checked = call.checked(now).and_then(|()| call.check_horizon(now));
     checked.map_err(|error| {
         let line = if error.field == "eta" { eta } else { etd };
         FileError::new(line.number, &line.name, error.detail)

@@ -13,24 +13,24 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
 /// Separators between the parts of a place.
-const BETWEEN: [char; 12] = [',', ';', '(', ')', '[', ']', '/', '|', ':', '\n', '–', '—'];
+const SEPARATORS: [char; 12] = [',', ';', '(', ')', '[', ']', '/', '|', ':', '\n', '–', '—'];
 
 /// Returns the port of an event from its properties.
-pub(super) fn port<'a>(
+pub(super) fn find_port<'a>(
     begins: usize,
     find: &impl Fn(&str) -> Option<&'a Line>,
 ) -> Result<PortCode, FileError> {
-    let said = |name: &str| find(name).filter(|line| !line.value.trim().is_empty());
-    let summary = said("SUMMARY").map_or("", |line| line.value.as_str());
-    if let Some(line) = said("X-UNLOCODE") {
+    let property = |name: &str| find(name).filter(|line| !line.value.trim().is_empty());
+    let summary = property("SUMMARY").map_or("", |line| line.value.as_str());
+    if let Some(line) = property("X-UNLOCODE") {
         let wrong = |what| FileError::new(line.number, "X-UNLOCODE", what);
         let code = PortCode::parse(&line.value).map_err(|error| wrong(error.to_string()))?;
         return match ports::find(code) {
             Some(_) => Ok(code),
-            None => Err(wrong(ports::unknown(code))),
+            None => Err(wrong(ports::describe_unknown(code))),
         };
     }
-    match said("LOCATION") {
+    match property("LOCATION") {
         Some(line) => port_of_location(&line.value, summary)
             .map_err(|what| FileError::new(line.number, "LOCATION", what)),
         None => port_of_summary(summary).map_err(|what| FileError::new(begins, "LOCATION", what)),
@@ -38,12 +38,12 @@ pub(super) fn port<'a>(
 }
 
 fn port_of_location(text: &str, summary: &str) -> Result<PortCode, String> {
-    let mut named = named(text.split(',').next().unwrap_or_default());
+    let mut named = ports_named(text.split(',').next().unwrap_or_default());
     if named.is_empty() {
-        named = self::named(text.split(BETWEEN).next().unwrap_or_default());
+        named = ports_named(text.split(SEPARATORS).next().unwrap_or_default());
     }
-    let alone = parts(text).filter_map(alone);
-    let codes = distinct(alone.chain(beside_their_names(text)));
+    let lone = split_parts(text).filter_map(parse_lone_code);
+    let codes = sorted_distinct(lone.chain(codes_beside_names(text)));
     match (&codes[..], named) {
         ([code], []) => Ok(*code),
         ([code], named) if named.iter().any(|port| is_called(*code, port)) => Ok(*code),
@@ -56,11 +56,11 @@ fn port_of_location(text: &str, summary: &str) -> Result<PortCode, String> {
         ([], []) => Err(format!("{text:?} is not a known port; write the UN/LOCODE")),
         // The summary may choose among ports of the same name.
         ([], [one, other, ..]) => {
-            let meant = words_as_codes(summary).filter(|code| {
+            let meant = find_codes(summary).filter(|code| {
                 let mut called = named.iter();
                 called.any(|port| port.code == *code)
             });
-            match distinct(meant)[..] {
+            match sorted_distinct(meant)[..] {
                 [code] => Ok(code),
                 _ => Err(ambiguous(&one.name.to_lowercase(), one.code, other.code)),
             }
@@ -69,12 +69,12 @@ fn port_of_location(text: &str, summary: &str) -> Result<PortCode, String> {
 }
 
 fn port_of_summary(text: &str) -> Result<PortCode, String> {
-    let behind_at = parts(text).filter_map(|part| {
+    let behind_at = split_parts(text).filter_map(|part| {
         let (_, there) = part.rsplit_once(" at ")?;
         let capitals = there.split_whitespace().take_while(|word| is_capital(word));
-        alone(&capitals.collect::<Vec<_>>().join(" "))
+        parse_lone_code(&capitals.collect::<Vec<_>>().join(" "))
     });
-    let codes = distinct(behind_at.chain(beside_their_names(text)));
+    let codes = sorted_distinct(behind_at.chain(codes_beside_names(text)));
     match codes[..] {
         [code] => Ok(code),
         [] => Err(
@@ -90,16 +90,16 @@ fn ambiguous(what: &str, one: PortCode, other: PortCode) -> String {
     format!("{what:?} may be {one} or {other}; write the UN/LOCODE")
 }
 
-fn distinct(codes: impl Iterator<Item = PortCode>) -> Vec<PortCode> {
+fn sorted_distinct(codes: impl Iterator<Item = PortCode>) -> Vec<PortCode> {
     let mut codes: Vec<PortCode> = codes.collect();
     codes.sort_unstable();
     codes.dedup();
     codes
 }
 
-/// The parts between commas, brackets and dashes.
-fn parts(text: &str) -> impl Iterator<Item = &str> {
-    text.split(BETWEEN)
+/// Splits a text into its parts between commas, brackets and dashes.
+fn split_parts(text: &str) -> impl Iterator<Item = &str> {
+    text.split(SEPARATORS)
         .flat_map(|part| part.split(" - "))
         .map(str::trim)
 }
@@ -108,8 +108,8 @@ fn is_capital(word: &str) -> bool {
     !word.is_empty() && !word.chars().any(char::is_lowercase)
 }
 
-/// The code, if the text is a code and nothing else, with or without its space.
-fn alone(text: &str) -> Option<PortCode> {
+/// Returns the code, if the text is a code and nothing else, with or without its space.
+fn parse_lone_code(text: &str) -> Option<PortCode> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let fits = match words[..] {
         [word] => word.len() == 5,
@@ -123,8 +123,8 @@ fn alone(text: &str) -> Option<PortCode> {
     ports::find(code).map(|_| code)
 }
 
-/// Codes among the words in capitals and pairs of them.
-fn words_as_codes(text: &str) -> impl Iterator<Item = PortCode> {
+/// Returns the codes among the words in capitals and pairs of them.
+fn find_codes(text: &str) -> impl Iterator<Item = PortCode> {
     let words: Vec<&str> = text
         .split(|letter: char| !letter.is_ascii_alphanumeric())
         .filter(|word| !word.is_empty())
@@ -133,23 +133,23 @@ fn words_as_codes(text: &str) -> impl Iterator<Item = PortCode> {
     let single = words.iter().map(|word| (*word).to_owned());
     let codes: Vec<PortCode> = single
         .chain(pairs)
-        .filter_map(|word| alone(&word))
+        .filter_map(|word| parse_lone_code(&word))
         .collect();
     codes.into_iter()
 }
 
-/// Codes in a text that also contains their ports' names.
-fn beside_their_names(text: &str) -> impl Iterator<Item = PortCode> {
-    let whole = format!(" {} ", plain(text));
-    words_as_codes(text).filter(move |code| {
+/// Returns the codes in a text that also contains their ports' names.
+fn codes_beside_names(text: &str) -> impl Iterator<Item = PortCode> {
+    let whole = format!(" {} ", normalize(text));
+    find_codes(text).filter(move |code| {
         let port = ports::find(*code);
-        let mut names = port.iter().flat_map(|port| names(port));
+        let mut names = port.iter().flat_map(|port| plain_names(port));
         names.any(|name| whole.contains(&format!(" {name} ")))
     })
 }
 
-/// Ports of exactly this name.
-fn named(name: &str) -> &'static [&'static Port] {
+/// Returns the ports of exactly this name.
+fn ports_named(name: &str) -> &'static [&'static Port] {
     // A calendar has thousands of places, and the table thousands of ports.
     static NAMED: OnceLock<BTreeMap<String, Vec<&'static Port>>> = OnceLock::new();
     let named = NAMED.get_or_init(|| {
@@ -169,27 +169,27 @@ fn named(name: &str) -> &'static [&'static Port] {
     found.map_or(&[], Vec::as_slice)
 }
 
-/// True if the port of a code shares a name with another: Georgetown is also
+/// Returns true if the port of a code shares a name with another: Georgetown is also
 /// Georgetown, Grand Cayman.
 fn is_called(code: PortCode, other: &Port) -> bool {
     let Some(port) = ports::find(code) else {
         return false;
     };
-    names(port).any(|name| names(other).any(|named| named == name))
+    plain_names(port).any(|name| plain_names(other).any(|named| named == name))
 }
 
-/// A port's names in plain words: the whole name, and the part before a comma
+/// Returns a port's normalized names: the whole name, and the part before a comma
 /// or bracket.
-fn names(port: &Port) -> impl Iterator<Item = String> {
+fn plain_names(port: &Port) -> impl Iterator<Item = String> {
     let both = [&port.name, &port.plain_name].map(|name| {
         let first = name.split([',', '(']).next().unwrap_or_default();
-        [plain(name), plain(first)]
+        [normalize(name), normalize(first)]
     });
     both.into_iter().flatten().filter(|name| !name.is_empty())
 }
 
-/// The text in lower case, with single blanks between words.
-fn plain(text: &str) -> String {
+/// Returns the text in lower case, with single blanks between words.
+fn normalize(text: &str) -> String {
     let words = text.split(|letter: char| !letter.is_alphanumeric());
     let words: Vec<String> = words
         .filter(|word| !word.is_empty())

@@ -66,7 +66,7 @@ impl Observance {
     }
 }
 
-/// The day of a rule in a year.
+/// Returns the day of a rule in a year.
 fn day_in(year: i32, rule: YearlyRule) -> Option<NaiveDate> {
     let YearlyRule {
         month,

@@ -1,7 +1,5 @@
 //! Coverage of a compass's samples, and advice on where to sail next.
 
-mod schema;
-
 use crate::analysis::{self, Covered};
 use crate::compasses::{self, WhichCompass};
 use crate::vessels;
@@ -11,7 +9,6 @@ use binnacle_platform::app::App;
 use binnacle_platform::error::{Problem, Result};
 use binnacle_platform::http::{Id, Json, Params};
 use binnacle_platform::ids::VesselId;
-use schema::CoverageSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -26,7 +23,7 @@ where
 /// Show the coverage of a compass's samples and where more would help most
 #[utoipa::path(get, path = "/vessels/{id}/coverage", tag = "fleet",
     params(("id" = VesselId, Path), WhichCompass),
-    responses((status = 200, body = CoverageSchema), (status = 401, body = Problem),
+    responses((status = 200, body = Covered), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn find_coverage(
     State(app): State<App>,

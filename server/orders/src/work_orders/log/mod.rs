@@ -2,4 +2,5 @@
 
 pub(crate) mod canonical_json;
 pub(crate) mod entry;
+pub(crate) mod entry_list;
 pub(crate) mod firm_view;

@@ -2,9 +2,10 @@
 
 use binnacle_adjustment::adjust::{Optimality, Outcome, Plan};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Plan that was chosen.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 pub(crate) struct ChosenPlan {
     /// Number among the plans offered, from 1.
     pub chosen: usize,
@@ -19,7 +20,8 @@ pub(crate) struct ChosenPlan {
 }
 
 /// Summary of a plan.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[schema(as = PlanInShort)]
 pub(crate) struct PlanSummary {
     /// Number of corrector moves.
     pub moves: u32,

@@ -42,14 +42,12 @@ pub(crate) struct SecondReadingResult {
     /// Verdict in words.
     pub words: String,
     /// Parts forward, to starboard and, if read both times, down.
-    #[schema(value_type = Vec<PartSchema>)]
     pub parts: Vec<FieldComponent>,
     /// Number of the suspected step, of all steps since the first reading, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step: Option<u32>,
     /// Setting of the correctors with that slip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<binnacle_fleet::binnacles::SettingSchema>)]
     pub setting: Option<Setting>,
     /// Worst residual predicted now, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -81,20 +79,4 @@ pub(crate) enum SecondReadingVerdict {
     Slip,
     /// Nothing explains the reading: read again.
     Unexplained,
-}
-
-/// One part of the field, nT.
-#[derive(ToSchema)]
-#[schema(as = SecondReadingPart)]
-#[allow(
-    dead_code,
-    clippy::struct_field_names,
-    reason = "describes binnacle_adjustment::adjust::FieldComponent"
-)]
-struct PartSchema {
-    /// Predicted value.
-    expected_nt: f64,
-    read_nt: f64,
-    /// Standard error of the difference.
-    standard_error_nt: f64,
 }

@@ -10,7 +10,6 @@ use utoipa::ToSchema;
 #[schema(as = OrderVerification)]
 pub(crate) struct SeaVerification {
     /// The verdict with its figures: `passed`, `more_needed` or `alarm`.
-    #[schema(value_type = crate::work_orders::schema::SeaVerdictSchema)]
     pub verification: Verification,
     /// The verdict in words.
     pub words: String,

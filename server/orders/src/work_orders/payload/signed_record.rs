@@ -31,7 +31,6 @@ pub(crate) struct Completion {
     pub model_id: ModelId,
     /// Content of that model.
     #[serde(rename = "model")]
-    #[schema(value_type = binnacle_fleet::models::ModelSchema)]
     pub model_after: Model,
 }
 

@@ -4,13 +4,14 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// Result of a step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = StepSaid)]
 pub(crate) struct StepResult {
     /// Number of the step in its plan.
     pub number: u32,
-    /// Compass reading before.
+    /// Compass reading before the step, degrees.
     pub before_deg: f64,
-    /// Compass reading after.
+    /// Compass reading after the step, degrees.
     pub after_deg: f64,
     /// Expected turn, degrees.
     pub expected_change_deg: f64,
@@ -44,23 +45,4 @@ impl StepResult {
     pub(crate) fn is_confirmed(&self) -> bool {
         matches!(self.verdict, StepVerdict::Confirmed | StepVerdict::NotSeen)
     }
-}
-
-/// Result of a step.
-#[derive(ToSchema)]
-#[schema(as = StepSaid)]
-#[allow(dead_code, reason = "describes StepSaid")]
-pub(crate) struct VerdictSchema {
-    /// The step's number in its plan.
-    number: u32,
-    before_deg: f64,
-    after_deg: f64,
-    /// Expected turn of the compass, degrees.
-    expected_change_deg: f64,
-    /// Tolerance of that turn, degrees.
-    tolerance_deg: f64,
-    /// Verdict.
-    verdict: StepVerdict,
-    /// Verdict in words.
-    words: String,
 }

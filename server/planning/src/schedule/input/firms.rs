@@ -1,8 +1,8 @@
-//! The firms to plan with: their teams, and what they have said no to.
+//! Firms to plan with: their teams and declined jobs.
 
 use super::names::Names;
 use super::orders::Order;
-use crate::port_calls::Row;
+use crate::port_calls::StoredCall;
 use crate::schedule::plan::{LeftOut, NO_TERMS};
 use binnacle_orders::firms;
 use binnacle_platform::app::App;
@@ -13,8 +13,8 @@ use binnacle_schedule::input::{Declined, Firm, Taken};
 use std::collections::BTreeMap;
 use uuid::Uuid;
 
-/// The firms to plan with, and those that cannot be planned with.
-pub(super) async fn firms_of(
+/// Returns the firms to plan with, and those left out.
+pub(super) async fn load_firms(
     app: &App,
     operator: OperatorId,
     names: &mut Names,
@@ -40,9 +40,9 @@ pub(super) async fn firms_of(
     Ok((planned_with, left_out))
 }
 
-/// Takes out the teams that orders have which are no jobs of the plan with that firm: other
-/// operators', and this one's beside it or with several firms that are asked at once.
-pub(super) async fn book(
+/// Books the teams of orders that are not jobs of the plan with that firm: other operators' orders,
+/// and this operator's beside the plan or offered to several firms at once.
+pub(super) async fn book_teams(
     app: &App,
     operator: OperatorId,
     as_of: Time,
@@ -53,27 +53,27 @@ pub(super) async fn book(
     for firm in firms {
         let id = FirmId(Uuid::parse_str(&firm.id).map_err(anyhow::Error::from)?);
         let all = firms::bookings(&app.db, id, from).await?;
-        let elsewhere = all.iter().filter(|one| {
+        let booked = all.iter().filter(|one| {
             let counts = one.is_taken || one.operator_id == operator;
             counts && planned.get(&one.order_id) != Some(&id)
         });
-        let days = firms::teams_taken(elsewhere, firm.jobs_a_team_day).into_iter();
+        let days = firms::teams_taken(booked, firm.jobs_a_team_day).into_iter();
         firm.taken = days.map(|(day, teams)| Taken { day, teams }).collect();
     }
     Ok(())
 }
 
-/// A firm's no to an order: to its call, as long as that is ahead. Where none is known it is to
-/// whatever the order is for while it stands.
-pub(super) fn declined(no: &Order, ahead: &[Row]) -> Option<Declined> {
-    let call = no.call(ahead);
-    let is_ahead = call.is_some_and(|call| ahead.iter().any(|row| row.id == call));
-    if !is_ahead && (call.is_some() || no.is_cancelled()) {
+/// Returns what a firm has declined: the order's call while it is upcoming. Without a known call it
+/// is any job of the compass until the order is cancelled.
+pub(super) fn find_declined(order: &Order, upcoming: &[StoredCall]) -> Option<Declined> {
+    let call = order.call(upcoming);
+    let is_upcoming = call.is_some_and(|call| upcoming.iter().any(|row| row.id == call));
+    if !is_upcoming && (call.is_some() || order.is_cancelled()) {
         return None;
     }
     Some(Declined {
-        need: no.compass_id.to_string(),
-        firm: no.firm_id?.to_string(),
+        need: order.compass_id.to_string(),
+        firm: order.firm_id?.to_string(),
         day: None,
         call: call.map(|call| call.to_string()),
     })

@@ -1,4 +1,4 @@
-//! The jobs that a plan begins from: those agreed, pinned, and proposed by the plan before.
+//! Jobs that a plan starts from: agreed, pinned, or proposed by the previous plan.
 
 use crate::needs::Need;
 use crate::schedule::plan::Plan;
@@ -7,21 +7,21 @@ use binnacle_schedule::input::{Firm, FormerJob, JobState};
 use chrono::NaiveDate;
 use std::collections::BTreeSet;
 
-/// Jobs of the plan before, and what has become of them since: each compass in one.
-pub(super) struct Former {
+/// Jobs that a plan starts from, at most one for each compass.
+pub(super) struct FormerJobs {
     needs: BTreeSet<CompassId>,
     firms: BTreeSet<String>,
-    /// Those that have a job.
-    pub(super) taken: BTreeSet<CompassId>,
+    /// Compasses with a job.
+    pub(super) with_job: BTreeSet<CompassId>,
     jobs: Vec<FormerJob>,
 }
 
-impl Former {
-    pub(super) fn new(found: &[Need], firms: &[Firm]) -> Former {
-        Former {
-            needs: found.iter().map(|need| need.compass_id).collect(),
+impl FormerJobs {
+    pub(super) fn new(needs: &[Need], firms: &[Firm]) -> FormerJobs {
+        FormerJobs {
+            needs: needs.iter().map(|need| need.compass_id).collect(),
             firms: firms.iter().map(|firm| firm.id.clone()).collect(),
-            taken: BTreeSet::new(),
+            with_job: BTreeSet::new(),
             jobs: Vec::new(),
         }
     }
@@ -32,8 +32,7 @@ impl Former {
         needs.any(|need| need.to_string() == compass) && self.firms.contains(firm)
     }
 
-    /// Adds a job for those of its compasses that have a need and no job yet; whether
-    /// there were any.
+    /// Adds a job for those compasses that have a need and no job yet; false when there are none.
     pub(super) fn add(
         &mut self,
         compasses: &[CompassId],
@@ -48,12 +47,12 @@ impl Former {
         }
         let open = compasses
             .iter()
-            .filter(|one| self.needs.contains(one) && !self.taken.contains(one));
+            .filter(|one| self.needs.contains(one) && !self.with_job.contains(one));
         let needs: Vec<CompassId> = open.copied().collect();
         if needs.is_empty() {
             return false;
         }
-        self.taken.extend(needs.iter().copied());
+        self.with_job.extend(needs.iter().copied());
         self.jobs.push(FormerJob {
             needs: needs.iter().map(CompassId::to_string).collect(),
             call: call.to_string(),
@@ -64,7 +63,7 @@ impl Former {
         true
     }
 
-    /// Adds what the plan before proposed.
+    /// Adds the jobs that the previous plan proposed.
     pub(super) fn add_proposed(&mut self, former: Option<&Plan>) {
         for job in former.iter().flat_map(|plan| &plan.jobs) {
             let compasses: Vec<CompassId> =
@@ -74,7 +73,7 @@ impl Former {
         }
     }
 
-    /// The jobs; those of one ship that are alike are one.
+    /// Returns the jobs. Jobs at one call with the same firm, day and state become one.
     pub(super) fn joined(&self) -> Vec<FormerJob> {
         let mut joined: Vec<FormerJob> = Vec::new();
         for job in &self.jobs {

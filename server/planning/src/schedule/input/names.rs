@@ -1,9 +1,9 @@
-//! Everybody's names, and which orders are jobs of the plan.
+//! Names for the plan, and the orders that are its jobs.
 
-use super::former::Former;
+use super::former::FormerJobs;
 use super::orders::Order;
 use crate::needs::Facts;
-use crate::port_calls::Row;
+use crate::port_calls::StoredCall;
 use crate::schedule::plan::{Compass, UnderWay};
 use binnacle_orders::work_orders::State;
 use binnacle_platform::ids::{CallId, CompassId, FirmId, OrderId, VesselId};
@@ -11,32 +11,32 @@ use binnacle_schedule::input::{Firm, JobState};
 use chrono::NaiveDate;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Everybody's names.
+/// Names for the plan, and the orders that are its jobs.
 #[derive(Default)]
-pub(in crate::schedule) struct Names {
-    pub(in crate::schedule) compasses: BTreeMap<CompassId, (VesselId, String, String)>,
-    pub(in crate::schedule) firms: BTreeMap<FirmId, String>,
-    pub(in crate::schedule) calls: BTreeMap<CallId, Row>,
-    pub(in crate::schedule) pinned: BTreeSet<CompassId>,
+pub(crate) struct Names {
+    pub(crate) compasses: BTreeMap<CompassId, (VesselId, String, String)>,
+    pub(crate) firms: BTreeMap<FirmId, String>,
+    pub(crate) calls: BTreeMap<CallId, StoredCall>,
+    pub(crate) pinned: BTreeSet<CompassId>,
     /// Orders that are jobs of the plan.
-    pub(in crate::schedule) agreed: BTreeMap<CompassId, Agreed>,
+    pub(crate) agreed: BTreeMap<CompassId, Agreed>,
     /// Orders that every firm has declined.
-    pub(in crate::schedule) declined: BTreeMap<CompassId, OrderId>,
+    pub(crate) declined: BTreeMap<CompassId, OrderId>,
 }
 
 /// Job that an order has agreed for a compass: firm, port call and day.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::schedule) struct Agreed {
-    pub(in crate::schedule) vessel_id: VesselId,
-    pub(in crate::schedule) order_id: OrderId,
-    pub(in crate::schedule) state: JobState,
-    pub(in crate::schedule) call_id: CallId,
-    pub(in crate::schedule) firm_id: FirmId,
-    pub(in crate::schedule) day: NaiveDate,
+pub(crate) struct Agreed {
+    pub(crate) vessel_id: VesselId,
+    pub(crate) order_id: OrderId,
+    pub(crate) state: JobState,
+    pub(crate) call_id: CallId,
+    pub(crate) firm_id: FirmId,
+    pub(crate) day: NaiveDate,
 }
 
 impl Names {
-    pub(super) fn of(facts: &[Facts]) -> Names {
+    pub(super) fn from_facts(facts: &[Facts]) -> Names {
         let compasses = facts.iter().map(|one| {
             let names = (
                 one.vessel_id,
@@ -51,11 +51,11 @@ impl Names {
         }
     }
 
-    /// Takes the orders that are jobs of the plan; those beside it come back, and why.
-    pub(super) fn take_orders<'a>(
+    /// Records the orders that are jobs of the plan. Returns those beside it, with the reason.
+    pub(super) fn add_orders<'a>(
         &mut self,
         orders: &'a [Order],
-        ahead: &[Row],
+        upcoming: &[StoredCall],
         planned_with: &[Firm],
     ) -> Vec<(&'a Order, String)> {
         let mut beside = Vec::new();
@@ -67,24 +67,27 @@ impl Names {
             let (Some(state), Some(firm_id)) = (order.job_state(), order.firm_id) else {
                 beside.push((
                     order,
-                    "its order is being done, or offered to nobody".to_owned(),
+                    "its order is in progress, or not offered to any firm".to_owned(),
                 ));
                 continue;
             };
             let id = firm_id.to_string();
             if planned_with.iter().all(|firm| firm.id != id) {
-                let firm = self.firm(firm_id);
-                beside.push((order, format!("{firm}, which has its order, is left out")));
+                let firm = self.firm_name(firm_id);
+                beside.push((
+                    order,
+                    format!("{firm} has its order and cannot be planned with"),
+                ));
                 continue;
             }
-            let Some(call_id) = order.call(ahead) else {
+            let Some(call_id) = order.call(upcoming) else {
                 beside.push((
                     order,
                     "no port call is known at its order's port and time".to_owned(),
                 ));
                 continue;
             };
-            let port = ahead.iter().find(|call| call.id == call_id);
+            let port = upcoming.iter().find(|call| call.id == call_id);
             let agreed = Agreed {
                 vessel_id: order.vessel_id,
                 order_id: order.id,
@@ -98,7 +101,7 @@ impl Names {
         beside
     }
 
-    /// Orders beside the plan, and why, with everybody's names.
+    /// Returns the orders beside the plan, with names and reasons.
     pub(super) fn under_way(&self, beside: Vec<(&Order, String)>) -> Vec<UnderWay> {
         let named = beside.into_iter().filter_map(|(order, why)| {
             let (vessel_id, vessel_name, _) = self.compasses.get(&order.compass_id)?;
@@ -113,16 +116,16 @@ impl Names {
         named.collect()
     }
 
-    /// The orders that are jobs of the plan before, each with its firm.
-    pub(super) fn planned(&self, former: &Former) -> BTreeMap<OrderId, FirmId> {
+    /// Returns the orders that are jobs to start from, each with its firm.
+    pub(super) fn planned(&self, former: &FormerJobs) -> BTreeMap<OrderId, FirmId> {
         let agreed = self.agreed.iter();
         agreed
-            .filter(|(compass, _)| former.taken.contains(compass))
+            .filter(|(compass, _)| former.with_job.contains(compass))
             .map(|(_, agreed)| (agreed.order_id, agreed.firm_id))
             .collect()
     }
 
-    pub(in crate::schedule) fn compass(&self, id: CompassId) -> Compass {
+    pub(crate) fn compass(&self, id: CompassId) -> Compass {
         let known = self.compasses.get(&id);
         Compass {
             compass_id: id,
@@ -130,7 +133,7 @@ impl Names {
         }
     }
 
-    pub(in crate::schedule) fn firm(&self, id: FirmId) -> String {
+    pub(crate) fn firm_name(&self, id: FirmId) -> String {
         self.firms.get(&id).cloned().unwrap_or_default()
     }
 }

@@ -1,7 +1,7 @@
 //! Alternatives to accepted events, and transients too weak to be accepted.
 
 use super::leads::Leads;
-use crate::change::event::EventKind;
+use crate::change::event::{EventKind, RowSpan};
 use crate::change::filter::Filter;
 
 /// A competing explanation of a step.
@@ -12,7 +12,7 @@ pub(crate) struct CompetingHypothesis {
     /// Variance of the drift of bx and by beyond the usual.
     pub(crate) drift: f64,
     pub(crate) first: usize,
-    pub(crate) between: (usize, usize),
+    pub(crate) between: RowSpan,
     pub(crate) filter: Filter,
     /// Filter before the change.
     pub(crate) before: Filter,

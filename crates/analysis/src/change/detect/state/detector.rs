@@ -47,11 +47,10 @@ pub(crate) struct Detector<'a> {
     /// Earlier states of the vessel, and possible returns at port calls.
     pub(crate) returns: PortCallReturns,
     pub(crate) departures: PortDepartures,
-    /// Current fault of a reference: place of its event, and the filter before.
-    pub(crate) reference_fault: Option<(usize, Filter)>,
-    /// Last alignment change, if nothing else changed since: place of its event, and the
-    /// filter before.
-    pub(crate) alignment_change: Option<(usize, Filter)>,
+    /// Current fault of a reference.
+    pub(crate) reference_fault: Option<FilterBefore>,
+    /// Last alignment change, if nothing else changed since.
+    pub(crate) alignment_change: Option<FilterBefore>,
     pub(crate) extra_drift: ExtraDrift,
     /// Competing explanations of the last step.
     pub(crate) competing: Vec<CompetingHypothesis>,
@@ -223,15 +222,22 @@ impl<'a> Detector<'a> {
     }
 }
 
+/// Event that may be undone, and the filter before it.
+pub(crate) struct FilterBefore {
+    /// Place of the event in the list.
+    pub(crate) event: usize,
+    pub(crate) before: Filter,
+}
+
 /// Returns the state that may be restored: that of a reference first, which is soon
 /// repaired, otherwise that before the last change.
 pub(crate) fn earlier_state<'a>(
-    reference_fault: Option<&'a (usize, Filter)>,
-    alignment_change: Option<&'a (usize, Filter)>,
+    reference_fault: Option<&'a FilterBefore>,
+    alignment_change: Option<&'a FilterBefore>,
     calls: &'a PortCallReturns,
 ) -> Option<EarlierState<'a>> {
-    let reference_step = reference_fault.map(|(_, before)| EarlierState::Reference(before));
-    let zero = || alignment_change.map(|(_, before)| EarlierState::Alignment(before));
+    let reference_step = reference_fault.map(|fault| EarlierState::Reference(&fault.before));
+    let zero = || alignment_change.map(|change| EarlierState::Alignment(&change.before));
     let vessel = || {
         calls
             .baselines

@@ -1,0 +1,210 @@
+//! A ship with an enrolled agent, whose batches the test makes.
+
+use crate::person::{ApiResponse, Person};
+use crate::server::TestServer;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::model::Model;
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
+use binnacle_wire::batch::{Batch, StreamId};
+use binnacle_wire::messages::{Downlink, EnrolAnswer};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+pub struct Ship {
+    url: String,
+    http: reqwest::Client,
+    pub id: String,
+    pub token: String,
+    pub stream: StreamId,
+}
+
+impl TestServer {
+    /// Creates a vessel of the person's operator and enrols an agent.
+    pub async fn ship(&self, person: &Person, name: &str) -> Ship {
+        Ship::enrol(self, person, name).await
+    }
+}
+
+impl Ship {
+    pub(crate) async fn enrol(server: &TestServer, person: &Person, name: &str) -> Ship {
+        let vessel = person.create_vessel(name).await;
+        let id = vessel["id"].as_str().unwrap().to_owned();
+        let code = person
+            .post(&format!("/vessels/{id}/agents"), &json!({}))
+            .await
+            .good();
+        let enrolled = enrol_with_code(server, code["code"].as_str().unwrap())
+            .await
+            .good();
+        let enrolled: EnrolAnswer = serde_json::from_value(enrolled).unwrap();
+        Ship {
+            url: server.url.clone(),
+            http: server.http.clone(),
+            id,
+            token: enrolled.token,
+            stream: enrolled.stream,
+        }
+    }
+
+    /// Continues with a server that was restarted.
+    pub fn reconnect(&mut self, server: &TestServer) {
+        self.url.clone_from(&server.url);
+    }
+
+    pub async fn put(&self, seq: u64, samples: &[Sample]) -> ApiResponse {
+        self.put_bytes(seq, frame(self.stream, seq, samples)).await
+    }
+
+    pub async fn put_bytes(&self, seq: u64, bytes: Vec<u8>) -> ApiResponse {
+        let path = format!("/streams/{}/batches/{seq}", self.stream);
+        ApiResponse::of(self.request(reqwest::Method::PUT, &path).body(bytes)).await
+    }
+
+    pub async fn downlink(&self, has: &str) -> Value {
+        let path = format!("/streams/{}/downlink{has}", self.stream);
+        ApiResponse::of(self.request(reqwest::Method::GET, &path))
+            .await
+            .good()
+    }
+
+    /// Returns the downlink in its compact form, and its length in bytes.
+    pub async fn compact_downlink(&self, has: &str) -> (Downlink, usize) {
+        let path = format!("/streams/{}/downlink?form=1{has}", self.stream);
+        let response = self.request(reqwest::Method::GET, &path).send().await;
+        let response = response.unwrap();
+        assert_eq!(response.headers().get("content-type"), None);
+        let bytes = response.bytes().await.unwrap();
+        (
+            binnacle_wire::downlink::decode(&bytes).unwrap(),
+            bytes.len(),
+        )
+    }
+
+    pub fn request(&self, method: reqwest::Method, path: &str) -> reqwest::RequestBuilder {
+        self.http
+            .request(method, format!("{}/api/v1{path}", self.url))
+            .bearer_auth(&self.token)
+    }
+
+    pub fn path(&self, rest: &str) -> String {
+        format!("/vessels/{}{rest}", self.id)
+    }
+
+    pub async fn report(&self, person: &Person, entry: &Value) -> Value {
+        person.post(&self.path("/logbook"), entry).await.good()
+    }
+
+    pub async fn put_report(&self, id: &str, report: &Value) -> ApiResponse {
+        let path = format!("/agents/logbook/{id}");
+        ApiResponse::of(self.request(reqwest::Method::PUT, &path).json(report)).await
+    }
+}
+
+pub async fn enrol_with_code(server: &TestServer, code: &str) -> ApiResponse {
+    let request = server
+        .http
+        .post(format!("{}/api/v1/agents/enrol", server.url))
+        .json(&json!({ "code": code, "agent_version": "1.2.3" }));
+    ApiResponse::of(request).await
+}
+
+pub fn frame(stream: StreamId, seq: u64, samples: &[Sample]) -> Vec<u8> {
+    let batch = Batch {
+        stream,
+        seq,
+        samples: samples.to_vec(),
+        tally: BTreeMap::from([("accepted".to_owned(), 60 * samples.len() as u64)]),
+        alerts: Vec::new(),
+        thinned: None,
+    };
+    binnacle_wire::encode(&batch).unwrap()
+}
+
+/// Default position of the ships: degrees north and east.
+const BISCAY: (f64, f64) = (48.0, -6.0);
+
+/// Returns the known magnetism of the ships.
+pub fn true_model() -> Model {
+    serde_json::from_value(json!({ "parameters_over_lambda": {
+        "bx_nt": 1500.0, "chi13": -0.01, "by_nt": -900.0, "chi23": 0.002,
+        "chi11_minus_chi22": 0.04, "chi12": 0.001, "chi21": 0.002,
+    }}))
+    .unwrap()
+}
+
+/// Returns a sample of that ship on a true heading.
+pub fn sample(time: Timestamp, heading_deg: f64) -> Sample {
+    sample_of(&true_model(), BISCAY, time, heading_deg)
+}
+
+/// Returns the known magnetism after a step in permanent magnetism, nT.
+pub fn model_after_step(bx_nt: f64, by_nt: f64) -> Model {
+    let mut ship = true_model();
+    ship.parameters_over_lambda.bx_nt += bx_nt;
+    ship.parameters_over_lambda.by_nt += by_nt;
+    ship
+}
+
+fn sample_of(ship: &Model, place: (f64, f64), time: Timestamp, heading_deg: f64) -> Sample {
+    let position = Position::new(place.0, place.1).unwrap();
+    let earth = field(FieldModel::Igrf14, position, 0.0, time).unwrap();
+    let heading = TrueHeading::new(heading_deg).unwrap();
+    let compass = ship
+        .compass_for_true(heading, earth.declination(), earth.for_ship())
+        .unwrap();
+    Sample {
+        time,
+        position,
+        compass,
+        gyro: Some(heading),
+        satellite: None,
+        sog_kn: Some(12.0),
+        rate_of_turn_deg_min: None,
+        spread_deg: Some(0.3),
+        windows: 60,
+    }
+}
+
+/// Returns ten-minute samples on all headings from a start time on.
+pub fn passage(from: &str, samples: usize) -> Vec<Sample> {
+    let start = Timestamp::parse(from).unwrap();
+    (0..samples)
+        .map(|i| sample(start.plus_seconds(600.0 * i as f64), 37.0 * i as f64))
+        .collect()
+}
+
+/// Returns samples of a number of days at sea: legs of three hours, a sample every ten
+/// minutes with both references, each with a small error.
+pub fn days_at_sea(ship: &Model, from: &str, days: f64) -> Vec<Sample> {
+    days_in_waters(BISCAY, ship, from, days)
+}
+
+/// Returns such samples at another position, degrees north and east.
+pub fn days_in_waters(place: (f64, f64), ship: &Model, from: &str, days: f64) -> Vec<Sample> {
+    let start = Timestamp::parse(from).unwrap();
+    let samples = (days * 144.0).round() as u32;
+    (0..samples)
+        .map(|i| {
+            let leg = f64::from(i / 18);
+            let time = start.plus_seconds(600.0 * f64::from(i));
+            let mut sample = sample_of(ship, place, time, 107.0 * leg);
+            let off = |sign: u32, size_deg: f64| size_deg * unevenness(3 * i + sign);
+            let compass_deg = sample.compass.degrees() + off(0, 0.4);
+            sample.compass = CompassHeading::new(compass_deg).unwrap();
+            let heading_deg = sample.gyro.unwrap().degrees();
+            sample.gyro = TrueHeading::new(heading_deg + off(1, 0.3));
+            sample.satellite = TrueHeading::new(heading_deg + off(2, 0.3));
+            sample
+        })
+        .collect()
+}
+
+/// Returns a reproducible pseudo-random number between -1 and 1.
+fn unevenness(i: u32) -> f64 {
+    let mixed = i.wrapping_mul(2_654_435_761) ^ 0x9E37_79B9;
+    let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x85EB_CA6B);
+    f64::from(mixed ^ (mixed >> 13)) / f64::from(u32::MAX) * 2.0 - 1.0
+}

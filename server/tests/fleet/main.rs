@@ -1,0 +1,26 @@
+//! Fleet of the server, tested over real HTTP on both databases.
+
+#![allow(clippy::unwrap_used, reason = "these are tests")]
+
+mod agent_alerts;
+mod alerts;
+mod analysis;
+mod binnacles;
+mod card;
+mod changes;
+mod deviation_book;
+mod enrolment;
+mod ingest;
+mod logbook;
+mod overview;
+mod short_bursts;
+mod vessels;
+
+use binnacle_server_testing::program;
+use std::path::Path;
+use std::process::Output;
+
+/// Runs the server's program in a folder.
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    program::run(env!("CARGO_BIN_EXE_binnacle-server"), folder, arguments)
+}

@@ -1,0 +1,85 @@
+//! The command `fit` with each of its methods.
+
+use crate::run;
+use binnacle_compass::angle::MagneticHeading;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
+use binnacle_server_testing::program::{assert_refused, good, samples_csv};
+use binnacle_server_testing::true_model;
+use std::fmt::Write;
+
+const METHODS: [&str; 3] = ["paper", "ols", "robust"];
+
+/// Returns a CSV of all headings in Biscay and south of the equator, with field columns.
+fn two_latitudes() -> String {
+    let mut text = "variation_deg,h_nt,z_nt,compass_deg,reference_deg\n".to_owned();
+    for (h_nt, z_nt) in [(24_000.0, 38_500.0), (27_000.0, -15_000.0)] {
+        for step in 0..36 {
+            let magnetic = MagneticHeading::new(f64::from(step) * 10.0).unwrap();
+            let compass = true_model()
+                .compass(magnetic, EarthField { h_nt, z_nt })
+                .unwrap()
+                .degrees();
+            let reference = (magnetic.degrees() + 355.0) % 360.0;
+            writeln!(text, "-5,{h_nt},{z_nt},{compass},{reference}").unwrap();
+        }
+    }
+    text
+}
+
+#[test]
+fn every_method_fits_a_perfect_swing() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("swing.csv"), two_latitudes()).unwrap();
+    let fields = [(24_000.0, 38_500.0), (18_000.0, 45_000.0)];
+    for method in METHODS {
+        let asked = ["fit", "swing.csv", "--json", "--method", method];
+        let model: Model = serde_json::from_str(&good(&run(folder.path(), &asked))).unwrap();
+        assert_eq!((model.samples_used, model.samples_rejected), (72, 0));
+        for (h_nt, z_nt) in fields {
+            let earth = EarthField { h_nt, z_nt };
+            for step in 0..24 {
+                let magnetic = MagneticHeading::new(f64::from(step) * 15.0).unwrap();
+                let compass = true_model().compass(magnetic, earth).unwrap();
+                let found = model.deviation(compass, earth).unwrap().deviation;
+                let off = magnetic.degrees() - compass.degrees() - found.degrees_east();
+                let off = (off + 540.0) % 360.0 - 180.0;
+                assert!(off.abs() < 0.1, "{method} on {compass}: {off}");
+            }
+        }
+    }
+}
+
+#[test]
+fn at_one_latitude_only_the_robust_method_fits() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = two_latitudes()
+        .lines()
+        .take(37)
+        .collect::<Vec<_>>()
+        .join("\n");
+    std::fs::write(folder.path().join("one.csv"), one).unwrap();
+    for method in ["paper", "ols"] {
+        let refused = run(folder.path(), &["fit", "one.csv", "--method", method]);
+        assert_refused(&refused, &["one.csv", "one magnetic latitude"]);
+    }
+    samples_csv(folder.path());
+    for file in ["one.csv", "samples.csv"] {
+        let table = good(&run(folder.path(), &["fit", file, "--method", "robust"]));
+        assert!(table.contains("chi13"), "{table}");
+    }
+}
+
+#[test]
+fn help_describes_the_methods() {
+    let folder = tempfile::tempdir().unwrap();
+    let help = good(&run(folder.path(), &["fit", "--help"]));
+    for word in METHODS
+        .into_iter()
+        .chain(["least squares", "default: robust"])
+    {
+        assert!(help.contains(word), "{word:?} is not in {help}");
+    }
+    let refused = run(folder.path(), &["fit", "x.csv", "--method", "magic"]);
+    assert_eq!(refused.status.code(), Some(2));
+}

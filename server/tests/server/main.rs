@@ -1,0 +1,21 @@
+//! Commands and documents of the server, tested as a program and over real HTTP.
+
+#![allow(clippy::unwrap_used, reason = "these are tests")]
+
+mod commands;
+mod dashboard;
+mod documentation_examples;
+mod fit;
+mod migration;
+mod openapi;
+mod plan;
+mod schedule;
+
+use binnacle_server_testing::program;
+use std::path::Path;
+use std::process::Output;
+
+/// Runs the server's program in a folder.
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    program::run(env!("CARGO_BIN_EXE_binnacle-server"), folder, arguments)
+}
