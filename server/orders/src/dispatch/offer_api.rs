@@ -1,8 +1,7 @@
 //! Handlers of offers to firms, and of their answers.
 
-use crate::dispatch::offer_requests;
 use crate::dispatch::offer_requests::{
-    FirmAnswer, OfferAnswer, Proposal, answer_as_firm, answer_as_operator,
+    self, Decision, FirmAnswer, OfferAnswer, Proposal, answer_as_firm, answer_as_operator,
 };
 use crate::work_orders::events::{Boarding, OrderEvent};
 use crate::work_orders::new_order::NewOffer;
@@ -107,7 +106,9 @@ async fn accept_work_order(
             Tenant::Firm(firm) => {
                 answer_as_firm(&mut change, firm, FirmAnswer::Accept(answer)).await?
             }
-            Tenant::Operator(_) => answer_as_operator(&mut change, answer, true).await?,
+            Tenant::Operator(_) => {
+                answer_as_operator(&mut change, answer, Decision::Accept).await?
+            }
         }
         change.commit().await?;
     }
@@ -140,7 +141,9 @@ async fn decline_work_order(
             Tenant::Firm(firm) => {
                 answer_as_firm(&mut change, firm, FirmAnswer::Decline(answer)).await?
             }
-            Tenant::Operator(_) => answer_as_operator(&mut change, answer, false).await?,
+            Tenant::Operator(_) => {
+                answer_as_operator(&mut change, answer, Decision::Decline).await?
+            }
         }
         change.commit().await?;
     }

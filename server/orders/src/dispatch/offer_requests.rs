@@ -5,8 +5,7 @@ use crate::dispatch::offer_sequence::{
     answer_by, require_future_job, send_next_offers, send_offers, share_deadline,
 };
 use crate::dispatch::port_call_check;
-use crate::firms;
-use crate::firms::{Requester, Visit};
+use crate::firms::{self, Requester, Visit};
 use crate::work_orders::events::{
     Accepted, Boarding, Declined, OfferRound, OfferedFirm, OrderEvent, ProposalAccepted,
     ProposalDeclined, Proposed,
@@ -323,16 +322,16 @@ pub(crate) enum FirmAnswer {
 pub(crate) async fn answer_as_firm(
     change: &mut Change<'_>,
     firm: FirmId,
-    says: FirmAnswer,
+    answer: FirmAnswer,
 ) -> Result<()> {
     let offers = change.stored.state().offers;
     let offer = offers.to_firm(firm).ok_or(Error::NotFound("work order"))?;
     let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
-    let gives_back = matches!(says, FirmAnswer::Decline(_))
+    let gives_back = matches!(answer, FirmAnswer::Decline(_))
         && offer.state == OfferState::Accepted
         && change.stored.summary.state == State::Accepted;
     // A firm may withdraw its own proposal.
-    let takes_back = matches!(says, FirmAnswer::Decline(_) | FirmAnswer::Propose(_))
+    let takes_back = matches!(answer, FirmAnswer::Decline(_) | FirmAnswer::Propose(_))
         && offer.state == OfferState::Proposed;
     if change.stored.summary.state == State::Cancelled {
         return wrong("the order is cancelled");
@@ -344,7 +343,7 @@ pub(crate) async fn answer_as_firm(
         return wrong(OfferState::Lapsed.reason_closed());
     }
     let named_firm = offer.firm();
-    match says {
+    match answer {
         FirmAnswer::Accept(answer) => {
             let at = change.stored.summary.planned_at;
             require_future_job(change, at)?;
@@ -385,6 +384,13 @@ pub(crate) async fn answer_as_firm(
     }
 }
 
+/// Decision of an operator on a proposal.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Decision {
+    Accept,
+    Decline,
+}
+
 /// Applies an operator's answer to a proposal.
 ///
 /// # Errors
@@ -392,7 +398,7 @@ pub(crate) async fn answer_as_firm(
 pub(crate) async fn answer_as_operator(
     change: &mut Change<'_>,
     answer: OfferAnswer,
-    yes: bool,
+    decision: Decision,
 ) -> Result<()> {
     let offers = change.stored.state().offers;
     let mut proposed = offers.all.iter().filter(|offer| {
@@ -412,14 +418,14 @@ pub(crate) async fn answer_as_operator(
     if offer.answer_by.is_some_and(|by| by < change.now) {
         return wrong("the proposal has lapsed");
     }
-    let mut between = Exchange {
+    let mut exchange = Exchange {
         terms: offer.terms.clone(),
         text: answer.text,
         ..Exchange::with(offer.firm())
     };
-    if yes {
-        let (firm, fee_eur) = (between.firm.clone(), offer.fee());
-        if let Some(terms) = &mut between.terms {
+    if decision == Decision::Accept {
+        let (firm, fee_eur) = (exchange.firm.clone(), offer.fee());
+        if let Some(terms) = &mut exchange.terms {
             // Terms that the firm omits stay as offered.
             terms.fee_eur = fee_eur;
             let at = terms.planned_at;
@@ -431,11 +437,11 @@ pub(crate) async fn answer_as_operator(
             }
         }
         return change
-            .append(OrderEvent::ProposalAccepted(ProposalAccepted(between)))
+            .append(OrderEvent::ProposalAccepted(ProposalAccepted(exchange)))
             .await;
     }
     change
-        .append(OrderEvent::ProposalDeclined(ProposalDeclined(between)))
+        .append(OrderEvent::ProposalDeclined(ProposalDeclined(exchange)))
         .await?;
     send_next_offers(change).await
 }

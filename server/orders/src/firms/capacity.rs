@@ -227,28 +227,22 @@ pub async fn require_capacity(
     };
     // Each operator records the teams that work for it: the largest number counts as all.
     let most = |figure: fn(&Terms) -> u32| all_terms.iter().map(|(_, terms)| figure(terms)).max();
-    let largest = (
-        most(|terms| terms.teams),
-        most(|terms| terms.jobs_a_team_day),
-    );
-    let own = own.map(|(_, terms)| (terms.teams, terms.jobs_a_team_day));
+    let all_teams = most(|terms| terms.teams).unwrap_or(0);
+    let all_jobs = most(|terms| terms.jobs_a_team_day).unwrap_or(1);
     let needed = |whose: &dyn Fn(&Booking) -> bool, jobs: u32| {
         let ships = others.iter().filter(|one| counts(one) && whose(one));
         let ships = ships.map(|one| (place(&one.port), one.vessel_id));
         teams(ships.chain([there.clone()]), jobs)
     };
-    let is_full = needed(&|_| true, largest.1.unwrap_or(1)) > largest.0.unwrap_or(0)
-        || own.is_some_and(|(teams, jobs)| {
-            needed(&|one| one.operator_id == visit.operator, jobs) > teams
-        });
+    let is_own = |one: &Booking| one.operator_id == visit.operator;
+    let is_full = needed(&|_| true, all_jobs) > all_teams
+        || own.is_some_and(|(_, terms)| needed(&is_own, terms.jobs_a_team_day) > terms.teams);
     if !is_full {
         return Ok(());
     }
     Err(Error::WrongState(match requester {
         Requester::Operator => {
-            let own = others
-                .iter()
-                .filter(|one| counts(one) && one.operator_id == visit.operator);
+            let own = others.iter().filter(|one| counts(one) && is_own(one));
             let own: Vec<String> = own
                 .map(|one| {
                     let Booking {
