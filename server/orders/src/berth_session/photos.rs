@@ -48,7 +48,7 @@ impl Photo {
             )));
         }
         Ok(Photo {
-            photo: id,
+            id,
             sha256: sha256_hex(bytes),
             media_type: media_type.to_owned(),
             bytes: bytes.len(),

@@ -106,7 +106,7 @@ async fn add_photo(
         store::insert_photo(
             &mut change.tx,
             &stored.summary,
-            taken.photo,
+            taken.id,
             kind,
             sha256,
             &bytes,
@@ -365,7 +365,7 @@ async fn find_evidence(
         bytes: predicted_csv(&record)?.into_bytes(),
     }];
     for (seq, photo) in photos(&stored) {
-        let found = store::find_photo(&app.db, vessel, id, photo.photo).await?;
+        let found = store::find_photo(&app.db, vessel, id, photo.id).await?;
         let (_, bytes) = found.ok_or_else(|| anyhow::anyhow!("a photograph is missing"))?;
         let name = photo.file(seq);
         files.push(File { name, bytes });

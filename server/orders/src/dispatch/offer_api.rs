@@ -104,10 +104,10 @@ async fn accept_work_order(
     if let Some(mut change) = update.begin_on(vessel).await? {
         match writer.tenant {
             Tenant::Firm(firm) => {
-                answer_as_firm(&mut change, firm, FirmAnswer::Accept(answer)).await?
+                answer_as_firm(&mut change, firm, FirmAnswer::Accept(answer)).await?;
             }
             Tenant::Operator(_) => {
-                answer_as_operator(&mut change, answer, Decision::Accept).await?
+                answer_as_operator(&mut change, answer, Decision::Accept).await?;
             }
         }
         change.commit().await?;
@@ -139,10 +139,10 @@ async fn decline_work_order(
     if let Some(mut change) = update.begin_on(vessel).await? {
         match writer.tenant {
             Tenant::Firm(firm) => {
-                answer_as_firm(&mut change, firm, FirmAnswer::Decline(answer)).await?
+                answer_as_firm(&mut change, firm, FirmAnswer::Decline(answer)).await?;
             }
             Tenant::Operator(_) => {
-                answer_as_operator(&mut change, answer, Decision::Decline).await?
+                answer_as_operator(&mut change, answer, Decision::Decline).await?;
             }
         }
         change.commit().await?;

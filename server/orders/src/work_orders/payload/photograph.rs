@@ -9,7 +9,8 @@ use utoipa::ToSchema;
 #[schema(as = OrderPhoto)]
 pub(crate) struct Photo {
     /// Its id.
-    pub photo: PhotoId,
+    #[serde(rename = "photo")]
+    pub id: PhotoId,
     /// SHA-256, hexadecimal.
     pub sha256: String,
     /// `image/jpeg`, `image/png` or `image/webp`.
