@@ -1,6 +1,7 @@
 //! State of the whole server: that of the platform and of single capabilities.
 
 use axum::extract::FromRef;
+use binnacle_orders::berth_session::CorrectorPlanSlots;
 use binnacle_planning::schedule::PlanSlots;
 use binnacle_platform::app::App;
 
@@ -11,6 +12,8 @@ pub struct ServerState {
     pub app: App,
     /// Slots for schedules being solved.
     pub plan_slots: PlanSlots,
+    /// Slots for corrector plans being made.
+    pub corrector_plan_slots: CorrectorPlanSlots,
 }
 
 impl ServerState {
@@ -19,6 +22,7 @@ impl ServerState {
         ServerState {
             app,
             plan_slots: PlanSlots::default(),
+            corrector_plan_slots: CorrectorPlanSlots::default(),
         }
     }
 }
@@ -32,5 +36,11 @@ impl FromRef<ServerState> for App {
 impl FromRef<ServerState> for PlanSlots {
     fn from_ref(state: &ServerState) -> PlanSlots {
         state.plan_slots.clone()
+    }
+}
+
+impl FromRef<ServerState> for CorrectorPlanSlots {
+    fn from_ref(state: &ServerState) -> CorrectorPlanSlots {
+        state.corrector_plan_slots.clone()
     }
 }

@@ -25,9 +25,6 @@ pub struct App {
     pub work: Arc<Notify>,
     /// Limit on concurrent password hashing: each takes 19 MB and a core.
     pub hashing: Arc<Semaphore>,
-    /// Limit on concurrent corrector planning: each plan takes a core for a second or two
-    /// while an adjuster at the berth waits for it.
-    pub planning: Arc<Semaphore>,
     /// Cached metadata of the OpenID Connect provider.
     pub provider: Arc<Provider>,
     /// Token that is cancelled when the server is to stop.
@@ -46,7 +43,6 @@ impl App {
             live: Live::new(),
             work: Arc::new(Notify::new()),
             hashing: Arc::new(Semaphore::new(2)),
-            planning: Arc::new(Semaphore::new(2)),
             provider: Arc::default(),
             stopping: CancellationToken::new(),
             metrics,

@@ -2,7 +2,7 @@
 
 use super::{BadInput, print_result};
 use crate::cli::VerifyEvidence;
-use binnacle_orders::evidence::{self, Found};
+use binnacle_orders::evidence::{self, Findings};
 use std::fs;
 use std::process::ExitCode;
 
@@ -18,7 +18,7 @@ pub fn verify_evidence(arguments: &VerifyEvidence) -> anyhow::Result<ExitCode> {
     print_result(checked)
 }
 
-fn describe(file: &str, found: &Found) -> Result<String, BadInput> {
+fn describe(file: &str, found: &Findings) -> Result<String, BadInput> {
     if !found.problems.is_empty() {
         return Err(BadInput(format!("{file}: {}", found.problems.join("; "))));
     }

@@ -1,10 +1,11 @@
 //! Remarks on a work order, its cancellation and its closing.
 
 use crate::completion::complete::{write_binnacle, write_logbook};
-use crate::work_orders::log_entry::{Content, Said};
-use crate::work_orders::order::{Order, State};
+use crate::work_orders::events::{Cancelled, Closed, OrderEvent, Remark};
+use crate::work_orders::order::Order;
 use crate::work_orders::order_update::Change;
-use crate::work_orders::{order_update, shown};
+use crate::work_orders::state::State;
+use crate::work_orders::{load_order, prepare_update};
 use axum::extract::State as Shared;
 use binnacle_platform::access::{PartyWriter, Writer};
 use binnacle_platform::app::App;
@@ -16,19 +17,19 @@ use binnacle_platform::ids::OrderId;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// Something to be said of an order.
+/// Request for a remark, or for a cancellation with its reason.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OrderRemark, example = json!({ "text": "Crane alongside until noon." }))]
-pub(super) struct Remark {
-    /// In words.
+pub(super) struct RemarkForm {
+    /// Text of the remark.
     #[schema(min_length = 1, max_length = 200)]
     text: String,
 }
 
-/// Say something of a work order
+/// Remark on a work order
 #[utoipa::path(post, path = "/work-orders/{id}/remarks", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Remark,
+    params(("id" = OrderId, Path), Key), request_body = RemarkForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem)))]
@@ -38,26 +39,26 @@ pub(super) async fn remark(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(remark): Valid<Remark>,
+    Valid(remark): Valid<RemarkForm>,
 ) -> Result<Json<Order>> {
-    let said = said(&remark)?;
-    let update = order_update(&app, request, writer, id, key, "remark", &remark)?;
-    let (whole, done) = update.look().await?;
+    let text = checked_text(&remark)?;
+    let update = prepare_update(&app, request, writer, id, key, "remark", &remark)?;
+    let (stored, done) = update.load().await?;
     if done.is_none()
-        && let Some(mut change) = update.begin(&whole).await?
+        && let Some(mut change) = update.begin(&stored).await?
     {
-        change.append(Content::Remark(said)).await?;
+        change.append(OrderEvent::Remark(Remark { text })).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 /// Cancel a work order
 ///
-/// For the operator; a firm declines. Correctors that were moved stay as they stand: the binnacle's next revision says so,
-/// and the logbook has the moment.
+/// For the operator; a firm declines instead. Correctors that were moved keep their settings: the
+/// next revision of the binnacle and an entry in the logbook record them.
 #[utoipa::path(post, path = "/work-orders/{id}/cancel", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Remark,
+    params(("id" = OrderId, Path), Key), request_body = RemarkForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, body = Problem), (status = 422, body = Problem)))]
@@ -67,67 +68,69 @@ pub(super) async fn cancel_work_order(
     writer: Writer,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(remark): Valid<Remark>,
+    Valid(remark): Valid<RemarkForm>,
 ) -> Result<Json<Order>> {
-    let said = said(&remark)?;
-    let update = order_update(&app, request, writer, id, key, "cancellation", &remark)?;
-    let (whole, done) = update.look().await?;
+    let reason = checked_text(&remark)?;
+    let update = prepare_update(&app, request, writer, id, key, "cancellation", &remark)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return load_order(&app, writer.operator, id).await;
     }
-    if !whole.summary.state.is_under_way() {
-        whole.must_be(&[], "it cannot be cancelled any more")?;
+    if !stored.summary.state.is_under_way() {
+        stored.require_state(&[], "it can no longer be cancelled")?;
     }
-    if let Some(mut change) = update.begin(&whole).await? {
-        leave_as_it_stands(&mut change).await?;
-        change.append(Content::Cancelled(said)).await?;
+    if let Some(mut change) = update.begin(&stored).await? {
+        record_moved_correctors(&mut change).await?;
+        change
+            .append(OrderEvent::Cancelled(Cancelled { text: reason }))
+            .await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    load_order(&app, writer.operator, id).await
 }
 
-/// Notes correctors that were moved though the adjustment came to nothing.
-async fn leave_as_it_stands(change: &mut Change<'_>) -> Result<()> {
-    let standing = change.whole.standing();
-    if !standing.was_moved() {
+/// Records correctors that were moved although the order is cancelled.
+async fn record_moved_correctors(change: &mut Change<'_>) -> Result<()> {
+    let state = change.stored.state();
+    if !state.has_moved_correctors() {
         return Ok(());
     }
-    let (Some(binnacle), Some(setting)) = (&standing.binnacle, standing.setting()) else {
+    let (Some(binnacle), Some(setting)) = (&state.binnacle, state.setting()) else {
         return Ok(());
     };
     let left = binnacle
         .with_setting(setting.clone())
         .map_err(binnacle_fleet::binnacles::invalid_binnacle)?;
     write_binnacle(change, &left, "left").await?;
-    let (now, port) = (change.now, change.whole.summary.port.clone());
+    let (now, port) = (change.now, change.stored.summary.port.clone());
     write_logbook(change, binnacle_platform::ids::EntryId::new(), now, &port).await
 }
 
-/// How an order is closed.
+/// Request to close an order.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OrderClosing, example = json!({ "text": "Papers are filed." }))]
 pub(super) struct Closing {
-    /// Why, in words.
+    /// Reason.
     #[schema(min_length = 1, max_length = 200)]
     text: String,
-    /// Close it though no headings at sea have spoken, as of a ship that sends no more. What
-    /// was foretold stays foretold.
+    /// Closes the order although no headings at sea verified it, for a vessel that sends no more
+    /// data. Predictions stay predictions.
     #[serde(default)]
     without_verification: bool,
 }
 
 /// Close a work order
 ///
-/// When headings at sea have spoken. One that no headings will be sent for is closed
-/// `without_verification`: it is `closed_unverified` then, its card stays predicted, and nothing
-/// says that it was verified.
+/// After verification by headings at sea. An order without such headings is closed with
+/// `without_verification`: its state becomes `closed_unverified`, and its card stays a
+/// prediction.
 #[utoipa::path(post, path = "/work-orders/{id}/close", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = Closing,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "Not before headings at sea have spoken, but for one \
-                             that was adjusted `without_verification`", body = Problem),
+              (status = 409, description = "The adjustment is not verified at sea, and the \
+                  request is not `without_verification`", body = Problem),
               (status = 422, body = Problem)))]
 pub(super) async fn close_work_order(
     Shared(app): Shared<App>,
@@ -138,33 +141,32 @@ pub(super) async fn close_work_order(
     Valid(closing): Valid<Closing>,
 ) -> Result<Json<Order>> {
     let text = text("text", &closing.text)?;
-    let update = order_update(&app, request, writer, id, key, "closing", &closing)?;
-    let (whole, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "closing", &closing)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return load_order(&app, writer.operator, id).await;
     }
-    let unverified = closing.without_verification && whole.summary.state == State::Adjusted;
+    let unverified = closing.without_verification && stored.summary.state == State::Adjusted;
     if !unverified {
         let allowed = [State::Verified, State::Failed];
-        whole.must_be(
+        stored.require_state(
             &allowed,
-            "it is closed when headings at sea have spoken, or once adjusted without_verification",
+            "it can be closed after verification at sea, or once adjusted with \
+                without_verification",
         )?;
     }
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         let text = if unverified {
             format!("closed without verification: {text}")
         } else {
             text
         };
-        change.append(Content::Closed(Said { text })).await?;
+        change.append(OrderEvent::Closed(Closed { text })).await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    load_order(&app, writer.operator, id).await
 }
 
-fn said(remark: &Remark) -> Result<Said> {
-    Ok(Said {
-        text: text("text", &remark.text)?,
-    })
+fn checked_text(remark: &RemarkForm) -> Result<String> {
+    text("text", &remark.text)
 }

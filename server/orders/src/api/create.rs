@@ -1,10 +1,13 @@
-//! New work orders, and the withdrawal of one that every firm declined.
+//! Creation of work orders, and cancellation of an order that every firm declined.
 
 use crate::dispatch::{offer_requests, port_call_check};
-use crate::work_orders::log_entry::{Author, Content, Said};
-use crate::work_orders::order::{NewOrder, Opened, Order, State};
+use crate::work_orders::events::{Cancelled, Opened, OrderEvent};
+use crate::work_orders::log::entry::Author;
+use crate::work_orders::new_order::NewOrder;
+use crate::work_orders::order::Order;
 use crate::work_orders::order_update::Change;
-use crate::work_orders::{shown, store};
+use crate::work_orders::state::State;
+use crate::work_orders::{load_order, store};
 use axum::extract::State as Shared;
 use axum::http::StatusCode;
 use binnacle_fleet::vessels;
@@ -22,7 +25,7 @@ use uuid::Uuid;
 
 /// Order a compass to be adjusted
 ///
-/// A compass has one order under way at a time. With an `offer` it is offered to firms at
+/// A compass has at most one order under way. An order with an `offer` is offered to firms at
 /// once.
 #[utoipa::path(post, path = "/work-orders", tag = "adjusting", params(Key),
     request_body = NewOrder,
@@ -51,15 +54,15 @@ pub(super) async fn create_work_order(
     }
     Ok((
         StatusCode::CREATED,
-        shown(&app, operator, OrderId(made)).await?,
+        load_order(&app, operator, OrderId(made)).await?,
     ))
 }
 
-/// Writes a new order, and offers it where that is asked for.
+/// Creates an order, and offers it to firms if requested.
 ///
 /// # Errors
-/// [`Error::WrongState`] when another order of the compass is under way or the vessel out of
-/// service, and what is wrong with the offer.
+/// [`Error::WrongState`] when another order of the compass is under way or the vessel is out of
+/// service, and any error of the offer.
 async fn open<'a>(
     app: &'a App,
     request: &RequestContext,
@@ -70,7 +73,7 @@ async fn open<'a>(
     author: Author,
 ) -> Result<Change<'a>> {
     let (vessel, compass) = (new.vessel_id, new.compass_id);
-    let (vessel_name, compass_name) = store::names(&mut tx, operator, vessel, compass).await?;
+    let (vessel_name, compass_name) = store::find_names(&mut tx, operator, vessel, compass).await?;
     if store::is_under_way(&mut tx, vessel, compass).await? {
         return Err(Error::WrongState(
             "another order of this compass is under way".to_owned(),
@@ -78,24 +81,24 @@ async fn open<'a>(
     }
     if !vessels::is_in_service(&mut tx, vessel).await? {
         return Err(Error::WrongState(format!(
-            "{vessel_name} is out of service: take her back into it first"
+            "{vessel_name} is out of service: return the vessel to service first"
         )));
     }
-    // Whom it is offered to stands in entries of their own.
+    // The offer has entries of its own.
     let offer = new.offer.take();
     let now = app.clock.now().into();
     request.concerns_vessel(vessel, Some(id));
     store::insert(&mut tx, id, &new, &author, now).await?;
-    let whole = store::lock(&mut tx, vessel, id).await?;
-    let mut change = Change::new(app, tx, whole, author, now, Uuid::now_v7());
+    let stored = store::lock(&mut tx, vessel, id).await?;
+    let mut change = Change::new(app, tx, stored, author, now, Uuid::now_v7());
     let opened = Opened {
         order: new,
         vessel_name,
         compass_name,
     };
-    change.append(Content::Opened(Box::new(opened))).await?;
-    let at = change.whole.summary.planned_at;
-    port_call_check::must_be_there(&mut change, at, "port").await?;
+    change.append(OrderEvent::Opened(Box::new(opened))).await?;
+    let at = change.stored.summary.planned_at;
+    port_call_check::require_vessel_in_port(&mut change, at, "port").await?;
     if let Some(offer) = offer {
         let offered = offer.checked(&mut change.tx, operator).await?;
         offer_requests::offer(&mut change, offered).await?;
@@ -103,12 +106,12 @@ async fn open<'a>(
     Ok(change)
 }
 
-/// Writes an order under an id and offers it, as the schedule has it, in a transaction that
-/// goes on: what there is to be told when it is committed comes back with it.
+/// Creates an order under an id and offers it, as the schedule requests, in an open transaction.
+/// Returns the live events, to be published after the commit.
 ///
 /// # Errors
-/// [`Error::WrongState`] when another order of the compass is under way, and what is wrong
-/// with the order or its offer.
+/// [`Error::WrongState`] when another order of the compass is under way, and any error of the
+/// order or its offer.
 pub async fn write(
     app: &App,
     request: &RequestContext,
@@ -120,15 +123,15 @@ pub async fn write(
     let author = author(&mut tx, writer).await?;
     let new = new.checked(app.clock.now().into())?;
     let change = open(app, request, tx, writer.operator, id, new, author).await?;
-    change.settle().await
+    change.finish().await
 }
 
-/// Cancels an order that every firm declined, for another in its place, in a transaction that
-/// goes on; one that is under way no more is in nobody's way.
+/// Cancels an order that every firm declined, to make way for another, in an open transaction. An
+/// order that is no longer under way stays as it is.
 ///
 /// # Errors
-/// [`Error::WrongState`] when firms are asked for it still, or one has it.
-pub async fn give_way(
+/// [`Error::WrongState`] when an offer is open or a firm has the order.
+pub async fn cancel_declined(
     app: &App,
     mut tx: Tx,
     writer: Writer,
@@ -136,25 +139,26 @@ pub async fn give_way(
     id: OrderId,
 ) -> Result<(Tx, Vec<Event>)> {
     let author = author(&mut tx, writer).await?;
-    let whole = store::lock(&mut tx, vessel, id).await?;
-    let state = whole.summary.state;
+    let stored = store::lock(&mut tx, vessel, id).await?;
+    let state = stored.summary.state;
     if !state.is_under_way() {
         return Ok((tx, Vec::new()));
     }
     if state != State::Declined {
         return Err(Error::WrongState(format!(
-            "work order {id} is under way and says something else: cancel it, or agree on \
-             another time"
+            "work order {id} is under way on other terms: cancel it, or agree on another time"
         )));
     }
     let now = app.clock.now().into();
-    let mut change = Change::new(app, tx, whole, author, now, Uuid::now_v7());
-    let text = "declined by every firm, and offered anew as the schedule has it".to_owned();
-    change.append(Content::Cancelled(Said { text })).await?;
-    change.settle().await
+    let mut change = Change::new(app, tx, stored, author, now, Uuid::now_v7());
+    let text = "declined by every firm, and offered again by the schedule".to_owned();
+    change
+        .append(OrderEvent::Cancelled(Cancelled { text }))
+        .await?;
+    change.finish().await
 }
 
-/// An operator's person, as entries name them.
+/// Author of entries for a user of the operator.
 async fn author(tx: &mut Tx, writer: Writer) -> Result<Author> {
     Ok(Author {
         id: Some(writer.user.0),

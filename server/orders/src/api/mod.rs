@@ -3,15 +3,18 @@
 mod actions;
 mod create;
 
-pub use create::{give_way, write};
+pub use create::{cancel_declined, write};
 
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
 use crate::berth_session::{berth_api, firm_vessel_view, second_reading_api};
 use crate::completion::completion_api;
 use crate::dispatch::{messages, offer_api, reschedule};
-use crate::work_orders::entry_list::{EntryLine, EntryList};
-use crate::work_orders::log_entry::Entry;
-use crate::work_orders::order::{Filter, Order, OrderList};
-use crate::work_orders::{firm_view, queries, shown, store};
+use crate::work_orders::log::entry::Entry;
+use crate::work_orders::log::entry_list::{EntryLine, EntryList};
+use crate::work_orders::log::firm_view;
+use crate::work_orders::order::Order;
+use crate::work_orders::summary::{Filter, OrderList};
+use crate::work_orders::{load_order, store};
 use axum::extract::{FromRef, RawPathParams, Request, State as Shared};
 use axum::middleware::{Next, from_fn};
 use axum::response::Response;
@@ -25,10 +28,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-/// The routes of this part.
+/// Routes of work orders.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    CorrectorPlanSlots: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new()
@@ -36,11 +40,12 @@ where
         .merge(router_of_one())
 }
 
-/// The routes of one order. In the audit log each request has its order, and what firms read
-/// is logged.
+/// Routes of a single order. The audit log names the order of each request, and records what
+/// firms read.
 fn router_of_one<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    CorrectorPlanSlots: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     completion_api::router()
@@ -58,7 +63,7 @@ where
         .route_layer(from_fn(log_order))
 }
 
-/// Tells the audit log which order a request is about.
+/// Names the order of a request in the audit log.
 async fn log_order(
     context: RequestContext,
     path: RawPathParams,
@@ -67,7 +72,7 @@ async fn log_order(
 ) -> Response {
     let mut ids = path.iter().map(|(_, value)| Uuid::parse_str(value));
     if let Some(order) = ids.find_map(std::result::Result::ok) {
-        context.concerns_order(OrderId(order), queries::vessel_of);
+        context.concerns_order(OrderId(order), store::find_vessel);
     }
     context.log_reads_of_firms();
     next.run(request).await
@@ -93,8 +98,7 @@ async fn list_work_orders(
 
 /// See a work order
 ///
-/// With all that the next thing to do depends on: the page at the binnacle asks for
-/// nothing else.
+/// Contains everything that the next action depends on.
 #[utoipa::path(get, path = "/work-orders/{id}", tag = "adjusting", params(("id" = OrderId, Path)),
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
@@ -103,12 +107,12 @@ async fn find_work_order(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Json<Order>> {
-    shown(&app, reader.tenant, id).await
+    load_order(&app, reader.tenant, id).await
 }
 
 /// Read a work order's log
 ///
-/// What is between the operator and another firm is withheld from a firm; its hash stays.
+/// Exchanges with other firms are withheld from a firm; their hashes stay.
 #[utoipa::path(get, path = "/work-orders/{id}/entries", tag = "adjusting",
     params(("id" = OrderId, Path), Page),
     responses((status = 200, body = EntryList), (status = 401, body = Problem),
@@ -119,9 +123,9 @@ async fn list_entries(
     Id(id): Id<OrderId>,
     page: Page,
 ) -> Result<Json<EntryList>> {
-    let summary = store::summary(&app.db, reader.tenant, id).await?;
+    let summary = store::find_summary(&app.db, reader.tenant, id).await?;
     let after = page.after_number()?;
-    let found = store::lines(&app.db, summary.vessel_id, id, after, page.fetch()).await?;
+    let found = store::list_lines(&app.db, summary.vessel_id, id, after, page.fetch()).await?;
     let listed = page.cut(found, |(seq, _, _)| seq.to_string());
     let read = |(seq, line, sha256): (i64, String, String)| {
         let entry: Entry = serde_json::from_str(&line)?;

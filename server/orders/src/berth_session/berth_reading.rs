@@ -1,62 +1,27 @@
-//! What was read at the berth, and what it is held against.
+//! Check of the reading at the berth.
 //!
-//! What always holds: a reading that is refused is kept with the reason; and one that is
-//! taken keeps with it everything that a plan from it depends on, so that the same plan
-//! can be made again from the log alone. Its words are those of `plan` (docs/plan.md).
+//! What always holds: a refused reading is kept with the reason. An accepted reading is kept with
+//! everything that a plan from it depends on, so that the plan can be repeated from the log
+//! alone. The field names are those of `plan` (docs/plan.md).
 
-use crate::berth_session::planning_inputs::Basis;
+use crate::work_orders::payload::basis::Basis;
+use crate::work_orders::payload::recorded_reading::BerthCheck;
 use crate::work_orders::refusal::Refusal;
 use binnacle_adjustment::adjust::ReadingForm;
 use binnacle_adjustment::berth::{BerthEstimate, BerthReading};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::time::Time;
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
 
-/// A reading as the log has it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Read {
-    /// What was read.
-    pub given: ReadingForm,
-    /// What it was held against; none when that could not be found.
-    pub basis: Option<Basis>,
-    /// What it told; none when it was refused.
-    pub checked: Option<Checked>,
-    /// Why it was refused; none when it was taken.
-    pub refusal: Option<Refusal>,
-}
+/// Largest lead of a clock on board over the server's, seconds.
+const MAX_CLOCK_LEAD_S: f64 = 300.0;
 
-/// What a reading told.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[schema(as = BerthCheck)]
-pub struct Checked {
-    /// λ, the mean share of the earth's horizontal field that reaches the compass; every
-    /// heading tells it equally well.
-    pub lambda: f64,
-    /// Its standard error.
-    #[schema(required)]
-    pub lambda_sd: Option<f64>,
-    /// Between the field read and the field expected, degrees.
-    pub consistency_deg: f64,
-    /// The standard error of that, degrees.
-    #[schema(required)]
-    pub consistency_sd_deg: Option<f64>,
-    /// What to make of it: `consistent`, or `loose` where wide errors explain it.
-    pub verdict: String,
-    /// Magnetic heading at the berth, degrees.
-    pub magnetic_deg: f64,
-}
-
-/// A clock on board may be so much before the server's, seconds.
-const FAST_CLOCK_S: f64 = 300.0;
-
-/// Refuses what cannot be a number of its kind, or a time.
-pub(crate) fn must_be_numbers(given: &ReadingForm, now: Time) -> Result<()> {
+/// Refuses values outside their ranges, and a time in the future.
+pub(crate) fn check_reading_ranges(given: &ReadingForm, now: Time) -> Result<()> {
     given.check_ranges().map_err(|error| Error::Invalid {
         field: error.field,
         detail: error.what,
     })?;
-    if given.at.seconds_since(now.0) > FAST_CLOCK_S {
+    if given.at.seconds_since(now.0) > MAX_CLOCK_LEAD_S {
         return Err(Error::Invalid {
             field: "at",
             detail: "lies in the future".to_owned(),
@@ -65,11 +30,11 @@ pub(crate) fn must_be_numbers(given: &ReadingForm, now: Time) -> Result<()> {
     Ok(())
 }
 
-/// What a reading told, or why it is not taken.
+/// Checks a reading against its basis; returns the check, or the refusal.
 pub(crate) fn check(
     given: &ReadingForm,
     basis: &Basis,
-) -> Result<std::result::Result<Checked, Refusal>> {
+) -> Result<std::result::Result<BerthCheck, Refusal>> {
     let variation = basis.variation()?;
     let checked = given.check(
         &basis.model.model,
@@ -78,15 +43,15 @@ pub(crate) fn check(
         &basis.binnacle,
     );
     Ok(match checked {
-        Ok((reading, estimate)) => Ok(Checked::new(&reading, &estimate)),
+        Ok((reading, estimate)) => Ok(BerthCheck::new(&reading, &estimate)),
         Err(refused) => Err(Refusal::from(&*refused)),
     })
 }
 
-impl Checked {
-    fn new(reading: &BerthReading, estimate: &BerthEstimate) -> Checked {
+impl BerthCheck {
+    fn new(reading: &BerthReading, estimate: &BerthEstimate) -> BerthCheck {
         let (lambda, consistency) = (estimate.lambda, estimate.consistency);
-        Checked {
+        BerthCheck {
             lambda: lambda.value,
             lambda_sd: lambda.standard_error,
             consistency_deg: consistency.angle_deg,

@@ -1,10 +1,10 @@
-//! What a firm may read of the ship while an order of hers is open.
+//! View of the vessel for a firm with an open order.
 //!
-//! What always holds: a firm reads model and binnacle only of the order's compass, only
-//! from the offer until the adjustment is completed, and each time is in the audit log.
+//! What always holds: a firm reads model and binnacle of the order's compass alone, and only from
+//! the offer to the completion of the adjustment. The audit log records each access.
 
-use crate::work_orders::order::Summary;
 use crate::work_orders::store;
+use crate::work_orders::summary::Summary;
 use axum::extract::{FromRef, State as Shared};
 use binnacle_fleet::binnacles::{self, BinnacleRevision};
 use binnacle_fleet::models::{self, ModelVersion};
@@ -28,7 +28,7 @@ where
 
 /// See the model of a work order's compass
 ///
-/// For a firm while the order is open to it and not completed; each time is noted.
+/// For a firm while the order is open to it and not completed. Each access is recorded.
 #[utoipa::path(get, path = "/work-orders/{id}/model", tag = "adjusting",
     params(("id" = OrderId, Path)),
     responses((status = 200, body = ModelVersion), (status = 401, body = Problem),
@@ -45,7 +45,7 @@ async fn find_model(
 
 /// See the binnacle of a work order's compass
 ///
-/// For a firm while the order is open to it and not completed; each time is noted.
+/// For a firm while the order is open to it and not completed. Each access is recorded.
 #[utoipa::path(get, path = "/work-orders/{id}/binnacle", tag = "adjusting",
     params(("id" = OrderId, Path)),
     responses((status = 200, body = BinnacleRevision), (status = 401, body = Problem),
@@ -62,9 +62,9 @@ async fn find_order_binnacle(
     ))
 }
 
-/// The order, if the reader may read this of its compass now.
+/// Returns the order, if the reader may read this of its compass now.
 async fn open(app: &App, reader: &PartyReader, id: OrderId, what: &'static str) -> Result<Summary> {
-    let summary = store::summary(&app.db, reader.tenant, id).await?;
+    let summary = store::find_summary(&app.db, reader.tenant, id).await?;
     if reader.tenant.firm().is_some() && !summary.state.is_under_way() {
         return Err(Error::NotFound(what));
     }

@@ -5,6 +5,7 @@ pub(crate) mod berth_reading;
 pub(crate) mod firm_vessel_view;
 pub mod photos;
 pub(crate) mod plan;
+pub(crate) mod plan_slots;
 mod planning_inputs;
 mod position_check;
 mod previous_lambda;
@@ -13,3 +14,4 @@ pub(crate) mod second_reading_api;
 pub(crate) mod steps;
 
 pub use berth_api::BerthHeadingRead;
+pub use plan_slots::CorrectorPlanSlots;

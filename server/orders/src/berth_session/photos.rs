@@ -1,55 +1,39 @@
-//! Photographs: what was seen, kept as it came.
+//! Photographs, kept as they were uploaded.
 //!
-//! What always holds: the kind of a file is told by its first octets, whatever it is
-//! called, and it has that kind's header with a size that a picture can have; it is given
-//! out as that kind and never as a page.
+//! What always holds: the type of a file follows from its first bytes, whatever its name. It has
+//! a header of that type with a plausible size. It is served as that type and never as a page.
 
-use crate::work_orders::log_entry::sha256_hex;
+use crate::work_orders::log::canonical_json::sha256_hex;
+use crate::work_orders::payload::photograph::Photo;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::http::optional_text;
 use binnacle_platform::ids::PhotoId;
-use serde::{Deserialize, Serialize};
-use utoipa::{IntoParams, ToSchema};
+use serde::Deserialize;
+use utoipa::IntoParams;
 
-/// A photograph is not larger.
+/// Largest photograph, bytes.
 pub const MAX_BYTES: usize = 10 * 1024 * 1024;
-/// No camera's picture has more to a side, and none that shows a tray has less.
-const SIDE: std::ops::RangeInclusive<u32> = 16..=32_768;
-/// So many belong to an order at most.
-pub const MOST: usize = 40;
+/// Range of a picture's sides, pixels: from the smallest that shows a tray to the largest of a
+/// camera.
+const SIDE_RANGE_PX: std::ops::RangeInclusive<u32> = 16..=32_768;
+/// Most photographs of an order.
+pub const MAX_PHOTOS: usize = 40;
 
-/// A photograph as the log has it.
-#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
-#[schema(as = OrderPhoto)]
-pub struct PhotoTaken {
-    /// Its id.
-    pub photo: PhotoId,
-    /// SHA-256, hexadecimal.
-    pub sha256: String,
-    /// `image/jpeg`, `image/png` or `image/webp`.
-    pub media_type: String,
-    /// How large it is.
-    pub bytes: usize,
-    /// What it shows.
-    #[schema(required)]
-    pub caption: Option<String>,
-}
-
-/// What a photograph shows.
+/// Caption of a photograph.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct Caption {
-    /// In a few words.
+    /// Short description.
     #[param(max_length = 200)]
     caption: Option<String>,
 }
 
-impl PhotoTaken {
-    /// A photograph of this id.
+impl Photo {
+    /// Validates the bytes of a photograph.
     ///
     /// # Errors
-    /// When it is too large, or of no kind that is taken.
-    pub fn new(id: PhotoId, bytes: &[u8], caption: &Caption) -> Result<PhotoTaken> {
+    /// When it is too large, or of an unsupported type.
+    pub(crate) fn new(id: PhotoId, bytes: &[u8], caption: &Caption) -> Result<Photo> {
         if bytes.len() > MAX_BYTES {
             return Err(Error::TooLarge(MAX_BYTES));
         }
@@ -57,28 +41,23 @@ impl PhotoTaken {
             Error::UnsupportedMediaType("a photograph is JPEG, PNG or WebP".to_owned())
         })?;
         let sides = size(media_type, bytes).unwrap_or([0, 0]);
-        if !sides.iter().all(|side| SIDE.contains(side)) {
+        if !sides.iter().all(|side| SIDE_RANGE_PX.contains(side)) {
             return Err(Error::UnsupportedMediaType(format!(
-                "the file begins as {media_type} and is no picture: it is cut off, or damaged"
+                "the file begins as {media_type} but is not a complete picture: it is truncated \
+                    or damaged"
             )));
         }
-        Ok(PhotoTaken {
-            photo: id,
+        Ok(Photo {
+            id,
             sha256: sha256_hex(bytes),
             media_type: media_type.to_owned(),
             bytes: bytes.len(),
             caption: optional_text("caption", caption.caption.as_deref())?,
         })
     }
-
-    /// Its name in the archive, after the number of its entry.
-    pub fn file(&self, seq: i64) -> String {
-        let ending = self.media_type.rsplit('/').next().unwrap_or("bin");
-        format!("photos/{seq:04}.{ending}")
-    }
 }
 
-/// The kind of a file by its first octets.
+/// Type of a file by its first bytes.
 fn media_type(bytes: &[u8]) -> Option<&'static str> {
     let webp = bytes.len() > 12 && bytes.starts_with(b"RIFF") && &bytes[8..12] == b"WEBP";
     match bytes {
@@ -89,8 +68,7 @@ fn media_type(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Width and height by the header; none of a file that ends before it, or has no picture
-/// behind it.
+/// Width and height by the header; `None` for a truncated file or one without picture data.
 fn size(media_type: &str, bytes: &[u8]) -> Option<[u32; 2]> {
     match media_type {
         "image/png" => png(bytes),
@@ -99,31 +77,31 @@ fn size(media_type: &str, bytes: &[u8]) -> Option<[u32; 2]> {
     }
 }
 
-fn octets<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
+fn array_at<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at.checked_add(N)?)?.try_into().ok()
 }
 
-/// `IHDR` comes first, and there is data (PNG, 5.6 and 11.2.1).
+/// Size of a PNG: `IHDR` comes first, and there is data (PNG, 5.6 and 11.2.1).
 fn png(bytes: &[u8]) -> Option<[u32; 2]> {
     let has_data = bytes.windows(4).any(|kind| kind == b"IDAT");
-    if octets::<4>(bytes, 12)? != *b"IHDR" || !has_data {
+    if array_at::<4>(bytes, 12)? != *b"IHDR" || !has_data {
         return None;
     }
     Some([
-        u32::from_be_bytes(octets(bytes, 16)?),
-        u32::from_be_bytes(octets(bytes, 20)?),
+        u32::from_be_bytes(array_at(bytes, 16)?),
+        u32::from_be_bytes(array_at(bytes, 20)?),
     ])
 }
 
-/// From segment to segment to the frame's header, with a scan behind it (ITU-T T.81, B.2).
+/// Size of a JPEG: segments up to the frame header, followed by a scan (ITU-T T.81, B.2).
 fn jpeg(bytes: &[u8]) -> Option<[u32; 2]> {
     let mut at = 2;
     let mut found = None;
     loop {
-        let [mark, kind, high, low] = octets::<4>(bytes, at)?;
+        let [mark, kind, high, low] = array_at::<4>(bytes, at)?;
         let length = usize::from(u16::from_be_bytes([high, low]));
         match (mark, kind) {
-            // Fill octets before a marker.
+            // Fill bytes before a marker.
             (0xFF, 0xFF) => {
                 at += 1;
                 continue;
@@ -131,7 +109,7 @@ fn jpeg(bytes: &[u8]) -> Option<[u32; 2]> {
             (0xFF, 0xDA) => return found,
             // Start of frame; C4, C8 and CC are tables.
             (0xFF, 0xC0..=0xCF) if !matches!(kind, 0xC4 | 0xC8 | 0xCC) => {
-                let [h1, h0, w1, w0] = octets::<4>(bytes, at + 5)?;
+                let [h1, h0, w1, w0] = array_at::<4>(bytes, at + 5)?;
                 let sides = [[w1, w0], [h1, h0]];
                 found = Some(sides.map(|side| u32::from(u16::from_be_bytes(side))));
             }
@@ -142,19 +120,22 @@ fn jpeg(bytes: &[u8]) -> Option<[u32; 2]> {
     }
 }
 
-/// Lossy, lossless or extended (RFC 9649, 2.4 to 2.7).
+/// Size of a WebP: lossy, lossless or extended (RFC 9649, 2.4 to 2.7).
 fn webp(bytes: &[u8]) -> Option<[u32; 2]> {
     let less_one = |three: [u8; 3]| 1 + u32::from_le_bytes([three[0], three[1], three[2], 0]);
-    match &octets::<4>(bytes, 12)? {
+    match &array_at::<4>(bytes, 12)? {
         b"VP8 " => {
-            let side = |at| Some(u32::from(u16::from_le_bytes(octets(bytes, at)?) & 0x3FFF));
+            let side = |at| Some(u32::from(u16::from_le_bytes(array_at(bytes, at)?) & 0x3FFF));
             Some([side(26)?, side(28)?])
         }
         b"VP8L" => {
-            let packed = u32::from_le_bytes(octets(bytes, 21)?);
+            let packed = u32::from_le_bytes(array_at(bytes, 21)?);
             Some([1 + (packed & 0x3FFF), 1 + ((packed >> 14) & 0x3FFF)])
         }
-        b"VP8X" => Some([less_one(octets(bytes, 24)?), less_one(octets(bytes, 27)?)]),
+        b"VP8X" => Some([
+            less_one(array_at(bytes, 24)?),
+            less_one(array_at(bytes, 27)?),
+        ]),
         _ => None,
     }
 }
@@ -173,7 +154,7 @@ mod tests {
         assert_eq!(size("image/jpeg", &jpeg[..20]), None);
         assert_eq!(size("image/jpeg", &[0xFF, 0xD8, 0xFF, 0xE0]), None);
         let mut png = b"\x89PNG\r\n\x1a\n".to_vec();
-        assert_eq!(size("image/png", &png), None, "its first octets alone");
+        assert_eq!(size("image/png", &png), None, "its first bytes alone");
         png.extend(b"\0\0\0\rIHDR\0\0\x03\x20\0\0\x02\x58\x08\x02\0\0\0crc.");
         assert_eq!(size("image/png", &png), None, "without data");
         png.extend(b"\0\0\0\x01IDATx");

@@ -1,12 +1,12 @@
-//! The plan: what the planner offers, and what was chosen of it.
+//! Corrector plans: conditions for planning, the plans offered, and the prediction.
 
-use crate::berth_session::planning_inputs::Prepared;
-use crate::work_orders::order::Summary;
-use crate::work_orders::order_state::Standing;
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
+use crate::berth_session::planning_inputs::PlanRequest;
+use crate::work_orders::order_state::OrderState;
 use crate::work_orders::refusal::{Cure, Refusal, not_adjustable};
+use crate::work_orders::summary::Summary;
 use binnacle_adjustment::adjust::{
-    AdjustError, Optimality, Outcome, Plan, UpdatedPrediction, check_total_turn, plan,
-    predict_by_compass,
+    Outcome, UpdatedPrediction, check_total_turn, plan, predict_by_compass,
 };
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_fleet::alerts::{self, Effect};
@@ -19,58 +19,30 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// A plan that was chosen.
-#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
-#[schema(as = ChosenPlan)]
-pub struct Planned {
-    /// Which of those that were offered, from 1.
-    pub chosen: usize,
-    /// All that were offered, in short.
-    pub offered: Vec<InShort>,
-    /// What the adjuster should know of it.
-    pub notes: Vec<String>,
-    /// How well the search knows that nothing is better.
-    pub optimality: Option<Optimality>,
-    /// The plan.
-    pub plan: Plan,
-}
-
-/// A plan in short.
-#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
-#[schema(as = PlanInShort)]
-pub struct InShort {
-    /// Movements of hand that it takes.
-    pub moves: u32,
-    /// Worst foretold residual, weighted over the waters, degrees.
-    pub worst_residual_deg: f64,
-    /// The widest 95 % band, degrees.
-    pub widest_band_deg: f64,
-}
-
-/// Which plan.
+/// Choice of a plan.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = PlanChoice, example = json!({ "plan": 1 }))]
-pub(crate) struct Choice {
-    /// Which of those that are offered, from 1: the recommended one where it is not said.
+pub(crate) struct PlanChoice {
+    /// Number of the plan among those offered, from 1; the recommended one by default.
     #[schema(minimum = 1)]
     pub plan: Option<usize>,
 }
 
-impl Standing {
-    /// What the planner is asked now.
+impl OrderState {
+    /// Input of the planner for the present state.
     ///
     /// # Errors
     /// [`Error::WrongState`] before there is a reading.
-    pub(crate) fn prepared(&self) -> Result<Prepared> {
+    pub(crate) fn plan_request(&self) -> Result<PlanRequest> {
         let wrong = || Error::WrongState("there is no reading to plan from yet".to_owned());
-        let read = self.read.as_ref().ok_or_else(wrong)?;
+        let read = self.reading.as_ref().ok_or_else(wrong)?;
         let basis = read.basis.clone().ok_or_else(wrong)?;
         let reading = read
             .given
             .reading(basis.variation()?)
             .map_err(|error| anyhow::anyhow!("a reading that was taken: {error}"))?;
-        Ok(Prepared {
+        Ok(PlanRequest {
             reading,
             given: read.given.clone(),
             binnacle: self.binnacle.clone().ok_or_else(wrong)?,
@@ -82,72 +54,70 @@ impl Standing {
     }
 }
 
-/// What is read at a berth holds no longer: by then she may lie elsewhere.
-pub(crate) const READING_HOLDS_S: f64 = 48.0 * 3600.0;
+/// Validity of a reading at a berth, seconds: later the vessel may lie elsewhere.
+pub(crate) const READING_VALIDITY_S: f64 = 48.0 * 3600.0;
 
-/// Refuses a reading that is too old, or older than a change of the ship's magnetism, of
-/// what is known of her binnacle or of cargo.
+/// Refuses a reading that is too old, or older than a change of the ship's magnetism, of the
+/// binnacle or of the cargo.
 ///
 /// # Errors
 /// [`Error::WrongState`].
-pub(crate) async fn must_still_hold(
+pub(crate) async fn require_current_reading(
     app: &App,
     summary: &Summary,
-    prepared: &Prepared,
+    plan_request: &PlanRequest,
 ) -> Result<()> {
-    let age_s = app.clock.now().seconds_since(prepared.given.at);
-    if age_s > READING_HOLDS_S {
+    let age_s = app.clock.now().seconds_since(plan_request.given.at);
+    if age_s > READING_VALIDITY_S {
         let hours = age_s / 3600.0;
         let words = format!("the berth was read {hours:.0} hours ago: read it again");
         return Err(Error::WrongState(words));
     }
-    must_be_without_cargo(app, summary, prepared).await?;
+    refuse_magnetic_cargo(app, summary, plan_request).await?;
     let (vessel, compass) = (summary.vessel_id, summary.compass_id);
     let binnacle = binnacles::current(&app.db, vessel, compass).await?;
-    if binnacle.is_some_and(|now| now.revision != prepared.basis.binnacle_revision) {
+    if binnacle.is_some_and(|now| now.revision != plan_request.basis.binnacle_revision) {
         return Err(Error::WrongState(
-            "the binnacle was written anew since the berth was read: read the berth again"
-                .to_owned(),
+            "the binnacle was revised after the berth reading: read the berth again".to_owned(),
         ));
     }
     let model = models::current(&app.db, vessel, compass).await?;
-    let known_until = prepared.basis.model.data_until;
+    let known_until = plan_request.basis.model.data_until;
     let holds = model.is_some_and(|model| model.epoch_from.is_none_or(|from| from <= known_until));
     if !holds {
         return Err(Error::WrongState(
-            "the ship's magnetism has changed since the model that the berth was held against: \
-             when there is a model again, read it again"
+            "the ship's magnetism has changed since the model of the berth reading: wait for a \
+                new model, then read the berth again"
                 .to_owned(),
         ));
     }
     Ok(())
 }
 
-/// Refuses what was read before magnetic cargo came on board, by the logbook as it is now,
-/// and what cargo that it has no longer would refuse. Cargo that it had and has is the
-/// planner's to refuse.
+/// Refuses a reading taken before magnetic cargo was loaded, or with cargo that the logbook no
+/// longer has. The planner refuses cargo that was on board then and now.
 ///
 /// # Errors
 /// [`Error::WrongState`].
-pub(crate) async fn must_be_without_cargo(
+pub(crate) async fn refuse_magnetic_cargo(
     app: &App,
     summary: &Summary,
-    prepared: &Prepared,
+    plan_request: &PlanRequest,
 ) -> Result<()> {
     let logbook = logbook::of_compass(&app.db, summary.vessel_id, summary.compass_id).await?;
-    let (read_at, now) = (prepared.given.at, app.clock.now());
+    let (read_at, now) = (plan_request.given.at, app.clock.now());
     let mut since = logbook.iter().filter(|entry| {
         entry.kind == LogbookKind::MagneticCargo
             && entry.from <= now
             && entry.to.is_none_or(|to| to > read_at)
     });
-    if prepared.basis.cargo_on_board {
-        if prepared.given.cargo_on_board || since.any(|entry| entry.from <= read_at) {
+    if plan_request.basis.cargo_on_board {
+        if plan_request.given.cargo_on_board || since.any(|entry| entry.from <= read_at) {
             return Ok(());
         }
         return Err(Error::WrongState(
-            "the logbook no longer has magnetic cargo on board when the berth was read: read the \
-             berth again"
+            "the logbook no longer shows magnetic cargo on board at the berth reading: read the \
+                berth again"
                 .to_owned(),
         ));
     }
@@ -155,49 +125,50 @@ pub(crate) async fn must_be_without_cargo(
         return Ok(());
     };
     Err(Error::WrongState(format!(
-        "the logbook has magnetic cargo on board since {}, and the berth was read without it: if \
-         the entry is wrong, put it right or withdraw it there; if not, wait until the cargo is \
-         ashore, put back the correctors that were moved, say so, and read the berth again",
+        "the logbook shows magnetic cargo on board since {}, and the berth was read without it: \
+            if the entry is wrong, correct or withdraw it there; otherwise wait until the cargo \
+            is ashore, put the moved correctors back, report their settings, and read the berth \
+            again",
         Time(cargo.from).to_the_minute()
     )))
 }
 
-/// Refuses what is foretold beyond the order's limits, however it came to be followed.
+/// Refuses a plan that predicts values beyond the order's limits.
 ///
 /// # Errors
-/// `not-adjustable` with what would cure it.
-pub(crate) fn must_keep_to_limits(standing: &Standing) -> Result<()> {
-    let basis = standing.read.as_ref().and_then(|read| read.basis.as_ref());
-    let followed = standing.plan.as_ref().zip(basis);
-    let beyond = followed
-        .and_then(|(plan, basis)| plan.plan.limit_violation(&standing.limits, &basis.waters));
-    match beyond {
+/// `not-adjustable`, with the cures.
+pub(crate) fn require_within_limits(state: &OrderState) -> Result<()> {
+    let basis = state.reading.as_ref().and_then(|read| read.basis.as_ref());
+    let followed = state.plan.as_ref().zip(basis);
+    let violation =
+        followed.and_then(|(plan, basis)| plan.plan.limit_violation(&state.limits, &basis.waters));
+    match violation {
         Some(refused) => Err(not_adjustable(vec![Refusal::from(&refused)])),
         None => Ok(()),
     }
 }
 
-/// Refuses to complete what in all turned the compass otherwise than planned, where
-/// neither the magnetometer nor anyone's eyes have said since that the correctors stand so:
-/// small errors of steps, each within its own tolerance, add up.
+/// Refuses to complete an adjustment whose total turn of the compass differs from the plan,
+/// unless a second reading or an inspection confirmed the settings: small errors of steps, each
+/// within its tolerance, add up.
 ///
 /// # Errors
 /// [`Error::WrongState`].
-pub(crate) async fn must_have_turned(
-    app: &App,
-    standing: &Standing,
-    prepared: Prepared,
+pub(crate) async fn require_total_turn(
+    slots: &CorrectorPlanSlots,
+    state: &OrderState,
+    plan_request: PlanRequest,
 ) -> Result<()> {
-    let looked = standing.looked_at == standing.steps.len();
-    let read = (prepared.given.compass_deg, prepared.compass_deg);
+    let all_inspected = state.inspected_steps == state.steps.len();
+    let read = (plan_request.given.compass_deg, plan_request.compass_deg);
     let (Some(first_deg), Some(now_deg)) = read else {
         return Ok(());
     };
-    if standing.learnt().is_some() || looked {
+    if state.confirmed_prediction().is_some() || all_inspected {
         return Ok(());
     }
-    let in_all = calculate(app, move || {
-        let adjustment = prepared.adjustment();
+    let in_all = slots.run(move || {
+        let adjustment = plan_request.adjustment();
         check_total_turn(&adjustment, first_deg, adjustment.standing(), now_deg)
     });
     let in_all = in_all.await?;
@@ -205,105 +176,78 @@ pub(crate) async fn must_have_turned(
         return Ok(());
     }
     Err(Error::WrongState(format!(
-        "{in_all}: read the field again (second reading), or look at each corrector and say how \
-         they stand"
+        "{in_all}: read the field again (second reading), or inspect each corrector and report \
+            the settings"
     )))
 }
 
-/// What is foretold of the correctors as they stand: by the magnetometer after the steps,
-/// or by what the compass showed at them, which leaves more open.
+/// Predicts the deviations for the present settings: by the second reading, or with more
+/// uncertainty by the compass at each step.
 ///
 /// # Errors
-/// `not-adjustable` where what is left open is beyond the order's limits.
-pub(crate) async fn foretold(app: &App, standing: &Standing) -> Result<UpdatedPrediction> {
-    if let Some(learnt) = standing.learnt() {
-        return Ok(learnt.clone());
+/// `not-adjustable` when the uncertainty is beyond the order's limits.
+pub(crate) async fn predict(
+    slots: &CorrectorPlanSlots,
+    state: &OrderState,
+) -> Result<UpdatedPrediction> {
+    if let Some(prediction) = state.confirmed_prediction() {
+        return Ok(prediction.clone());
     }
-    let prepared = standing.prepared()?;
-    let (limits, waters) = (standing.limits, prepared.basis.waters.clone());
-    let steps = standing.steps.clone();
-    let learnt = calculate(app, move || {
-        predict_by_compass(&prepared.adjustment(), &steps)
-    })
-    .await?;
-    let Some(beyond) = learnt.limit_violation(&limits, &waters) else {
-        return Ok(learnt);
+    let plan_request = state.plan_request()?;
+    let (limits, waters) = (state.limits, plan_request.basis.waters.clone());
+    let steps = state.steps.clone();
+    let prediction = slots
+        .run(move || predict_by_compass(&plan_request.adjustment(), &steps))
+        .await?;
+    let Some(violation) = prediction.limit_violation(&limits, &waters) else {
+        return Ok(prediction);
     };
-    let mut refusal = Refusal::from(&beyond);
+    let mut refusal = Refusal::from(&violation);
     refusal.words = format!(
-        "by what the compass showed of the steps, {}: read the field again",
+        "by the compass readings of the steps, {}: read the field again",
         refusal.words
     );
     refusal.cures.insert(0, Cure::ReadAgain);
     Err(not_adjustable(vec![refusal]))
 }
 
-/// What the planner offers, or why it offers nothing.
+/// Returns the planner's plans with its notes.
 ///
 /// # Errors
-/// `not-adjustable` with what would cure it.
-pub(crate) async fn offer(app: &App, summary: &Summary, prepared: Prepared) -> Result<Outcome> {
+/// `not-adjustable`, with the cures.
+pub(crate) async fn offer_plans(
+    app: &App,
+    slots: &CorrectorPlanSlots,
+    summary: &Summary,
+    plan_request: PlanRequest,
+) -> Result<Outcome> {
     let (vessel, compass) = (summary.vessel_id, summary.compass_id);
     let alerts = alerts::list_in_force(&app.db, vessel, compass).await?;
-    let unproved = prepared.basis.model.headings_until;
-    let mut outcome = calculate(app, move || plan(&prepared.adjustment())).await?;
+    let unproved = plan_request.basis.model.headings_until;
+    let mut outcome = slots.run(move || plan(&plan_request.adjustment())).await?;
     if let Some(until) = unproved {
         outcome.notes.insert(
             0,
             format!(
-                "no heading at sea has confirmed the last adjustment, and the model is foretold \
-                 by it: the last heading behind it is of {}",
+                "no heading at sea has confirmed the last adjustment, which predicted the model: \
+                    the last heading behind it is from {}",
                 until.to_the_minute()
             ),
         );
     }
-    let told = alerts
+    let notes = alerts
         .iter()
         .filter(|alert| alert.cause.effect_on_plan() == Effect::Note);
-    let told = told.map(|alert| format!("an alert about this compass is open: {}", alert.summary));
-    outcome.notes.splice(0..0, told);
+    let notes =
+        notes.map(|alert| format!("an alert about this compass is open: {}", alert.summary));
+    outcome.notes.splice(0..0, notes);
     if outcome.plans.is_empty() {
         return Err(not_adjustable(refusals(&outcome)));
     }
     Ok(outcome)
 }
 
-/// Runs the planner on a blocking thread, a few at a time.
-pub(crate) async fn calculate<T: Send + 'static>(
-    app: &App,
-    what: impl FnOnce() -> std::result::Result<T, AdjustError> + Send + 'static,
-) -> Result<T> {
-    let turn = app.planning.clone().acquire_owned().await;
-    let turn = turn.map_err(|error| anyhow::anyhow!(error))?;
-    let done = tokio::task::spawn_blocking(move || {
-        let _turn = turn;
-        what()
-    });
-    done.await?.map_err(|error| Error::Invalid {
-        field: "plan",
-        detail: error.to_string(),
-    })
-}
-
-/// Why an outcome has no plans.
+/// Reasons for an outcome without plans.
 pub(crate) fn refusals(outcome: &Outcome) -> Vec<Refusal> {
     outcome.refusals.iter().map(Refusal::from).collect()
-}
-
-impl Planned {
-    /// What was chosen of an outcome, from 1; none when there are not so many.
-    pub fn of(outcome: Outcome, chosen: usize) -> Option<Planned> {
-        let in_short = |plan: &Plan| InShort {
-            moves: plan.moves,
-            worst_residual_deg: plan.worst_residual_deg,
-            widest_band_deg: plan.widest_band_deg,
-        };
-        Some(Planned {
-            chosen,
-            offered: outcome.plans.iter().map(in_short).collect(),
-            notes: outcome.notes,
-            optimality: outcome.optimality,
-            plan: outcome.plans.into_iter().nth(chosen.checked_sub(1)?)?,
-        })
-    }
 }

@@ -1,16 +1,14 @@
-//! What a reading is held against and a plan rests on: model, field, binnacle and
-//! waters, as they were when the magnetometer was read.
+//! Inputs of a plan: model, field, binnacle and waters at the time of the reading.
 
-use crate::berth_session::previous_lambda::{self, EarlierBerth};
-use crate::work_orders::order::State;
+use crate::berth_session::previous_lambda;
+use crate::work_orders::payload::basis::{Basis, ModelUsed};
+use crate::work_orders::state::State;
 use crate::work_orders::store;
 use binnacle_adjustment::adjust::{Adjustment, Circumstances, Limits, ReadingForm, Water};
 use binnacle_adjustment::berth::BerthReading;
 use binnacle_adjustment::binnacle::{Binnacle, Setting};
-use binnacle_compass::angle::Variation;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::logbook::LogbookKind;
-use binnacle_compass::model::Model;
 use binnacle_compass::position::Position;
 use binnacle_compass::result::SampleDiagnostic;
 use binnacle_compass::ship::EarthField;
@@ -21,83 +19,33 @@ use binnacle_fleet::models::{self, StoredModel};
 use binnacle_platform::app::App;
 use binnacle_platform::db::row;
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::ids::{CompassId, ModelId, VesselId};
+use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// What a plan rests on.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Basis {
-    /// The ship's model.
-    pub model: ModelUsed,
-    /// The earth's field at the berth: variation, degrees, east positive.
-    pub variation_deg: f64,
-    /// Its horizontal part, nT.
-    pub h_nt: f64,
-    /// Its vertical part, nT, down positive.
-    pub z_nt: f64,
-    /// Which model of the earth's field says so.
-    pub field_model: String,
-    /// The binnacle's revision.
-    pub binnacle_revision: i64,
-    /// The binnacle, with its correctors as they stood.
-    pub binnacle: Binnacle,
-    /// Where the vessel trades, from her own track.
-    pub waters: Vec<Water>,
-    /// Whether magnetic cargo is on board, by the logbook or the reading.
-    pub cargo_on_board: bool,
-    /// What the compass's last adjustment told of λ.
-    #[serde(default)]
-    pub earlier: Option<EarlierBerth>,
-    /// Whether the model has learnt from a reading at this berth.
-    #[serde(default)]
-    pub is_updated_here: bool,
-}
-
-/// The model that a plan rests on.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct ModelUsed {
-    /// Its id.
-    pub id: ModelId,
-    /// Counts the compass's models from 1.
-    pub version: i64,
-    /// SHA-256 of everything that it was made from.
-    pub input_hash: String,
-    /// The estimator that made it.
-    pub estimator: String,
-    /// The time of its last sample.
-    pub data_until: Time,
-    /// The time of the last heading behind it, where an adjustment foretold it and no
-    /// heading at sea has confirmed that.
-    #[serde(default)]
-    pub headings_until: Option<Time>,
-    /// The model with its covariance.
-    pub model: Model,
-}
-
-/// A plan's argument with all that it borrows.
-pub(crate) struct Prepared {
-    /// What it rests on.
+/// Input of the planner, with everything that it borrows.
+pub(crate) struct PlanRequest {
+    /// Basis of the plan.
     pub basis: Basis,
-    /// The reading as the science takes it.
+    /// Reading, as the planner takes it.
     pub reading: BerthReading,
-    /// The reading as it was given.
+    /// Reading, as it was sent.
     pub given: ReadingForm,
-    /// The binnacle, its correctors as strong as they were found to be.
+    /// Binnacle, with the strengths found so far.
     pub binnacle: Binnacle,
-    /// How they stand now, where they were moved since.
+    /// Present setting of the correctors, if they were moved since the reading.
     pub moved_to: Option<Setting>,
-    /// What the compass was last read to be with them so, degrees.
+    /// Last reading of the compass with that setting, degrees.
     pub compass_deg: Option<f64>,
-    /// What a plan must keep to, by the order.
+    /// Limits of the order.
     pub limits: Limits,
 }
 
 impl Basis {
-    /// What there is to hold a reading against.
-    pub async fn load(
+    /// Loads the basis for a reading.
+    pub(crate) async fn load(
         app: &App,
         vessel: VesselId,
         compass: CompassId,
@@ -106,7 +54,7 @@ impl Basis {
         let model = models::must_have(app, vessel, compass).await?;
         let binnacle = binnacles::current(&app.db, vessel, compass).await?;
         let binnacle = binnacle.ok_or(Error::WrongState(
-            "the compass has no binnacle yet: write it first".to_owned(),
+            "the compass has no binnacle yet: enter it first".to_owned(),
         ))?;
         let position = Position::new(given.lat, given.lon).map_err(|error| Error::Invalid {
             field: "lat, lon",
@@ -132,26 +80,14 @@ impl Basis {
             binnacle: binnacle.binnacle.0,
             waters: waters(app, vessel, compass, earth.for_ship()).await?,
             cargo_on_board: cargo || given.cargo_on_board,
-            earlier: previous_lambda::of_compass(app, vessel, compass, given.at, &logbook).await?,
+            earlier: previous_lambda::find_for_compass(app, vessel, compass, given.at, &logbook)
+                .await?,
             is_updated_here: false,
             model: ModelUsed {
                 headings_until: headings_until(app, vessel, &model).await?,
                 ..ModelUsed::from(model)
             },
         })
-    }
-
-    /// The earth's field at the berth.
-    pub fn earth(&self) -> EarthField {
-        EarthField {
-            h_nt: self.h_nt,
-            z_nt: self.z_nt,
-        }
-    }
-
-    /// Variation at the berth.
-    pub fn variation(&self) -> Result<Variation> {
-        Ok(Variation::try_from(self.variation_deg).map_err(anyhow::Error::from)?)
     }
 }
 
@@ -169,8 +105,8 @@ impl From<StoredModel> for ModelUsed {
     }
 }
 
-impl Prepared {
-    /// What the planner is asked.
+impl PlanRequest {
+    /// Borrows the planner's input.
     pub(crate) fn adjustment(&self) -> Adjustment<'_> {
         let model = &self.basis.model;
         let until = model.headings_until.unwrap_or(model.data_until);
@@ -197,8 +133,8 @@ impl Prepared {
     }
 }
 
-/// Until when there are headings behind a model that an order foretold, where none at sea
-/// has confirmed it: what is foretold is no fresher than what it was foretold from.
+/// Time of the last heading behind a model that an order predicted, unless headings at sea
+/// confirmed it. A prediction is no fresher than its own data.
 async fn headings_until(app: &App, vessel: VesselId, model: &StoredModel) -> Result<Option<Time>> {
     let Some(order) = model.foretold_by else {
         return Ok(None);
@@ -213,7 +149,7 @@ async fn headings_until(app: &App, vessel: VesselId, model: &StoredModel) -> Res
     if state.is_some_and(|(state,)| state == State::Verified) {
         return Ok(None);
     }
-    let Some(record) = store::record(&app.db, vessel, order).await? else {
+    let Some(record) = store::find_record(&app.db, vessel, order).await? else {
         return Ok(None);
     };
     let record: Value = serde_json::from_str(&record)?;
@@ -223,12 +159,12 @@ async fn headings_until(app: &App, vessel: VesselId, model: &StoredModel) -> Res
     Ok(until.map(Time::deserialize).transpose()?)
 }
 
-/// Cells of the horizontal and the vertical field, nT: within one a compass feels the same.
+/// Cells of the horizontal and the vertical field, nT: within one a compass behaves alike.
 const CELL_NT: (f64, f64) = (3_000.0, 6_000.0);
-/// So many waters at most, those where she was most.
-const MOST_WATERS: usize = 5;
+/// Most waters of a plan; those with the most samples are kept.
+const MAX_WATERS: usize = 5;
 
-/// Where the vessel was, as a compass feels it; the berth where nothing is known.
+/// Magnetic waters in which the vessel sailed; the berth where nothing is known.
 async fn waters(
     app: &App,
     vessel: VesselId,
@@ -251,8 +187,8 @@ async fn waters(
     });
     let mut waters: Vec<Water> = read.await??;
     waters.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    waters.truncate(MOST_WATERS);
-    tell_apart(&mut waters);
+    waters.truncate(MAX_WATERS);
+    disambiguate_names(&mut waters);
     if waters.is_empty() {
         waters.push(Water {
             name: "the berth's waters".to_owned(),
@@ -268,7 +204,7 @@ async fn waters(
     Ok(waters)
 }
 
-/// The means of a cell's samples, each counted by its windows.
+/// Weighted mean of a cell's samples.
 fn water(samples: &[SampleDiagnostic]) -> Option<Water> {
     let weight = |found: &SampleDiagnostic| f64::from(found.sample.windows.max(1));
     let whole: f64 = samples.iter().map(weight).sum();
@@ -287,8 +223,8 @@ fn water(samples: &[SampleDiagnostic]) -> Option<Water> {
     })
 }
 
-/// Waters of one name have the field that tells them apart in it.
-fn tell_apart(waters: &mut [Water]) {
+/// Appends the field to the names of waters that share one.
+fn disambiguate_names(waters: &mut [Water]) {
     let names: Vec<String> = waters.iter().map(|water| water.name.clone()).collect();
     for water in waters {
         if names.iter().filter(|name| **name == water.name).count() > 1 {
@@ -315,7 +251,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn waters_of_one_name_are_told_apart_by_their_field() {
+    fn waters_of_one_name_are_distinguished_by_their_field() {
         let water = |name: &str, z_nt: f64| Water {
             name: name.to_owned(),
             h_nt: 29_400.0,
@@ -328,7 +264,7 @@ mod tests {
             water(there, 0.0),
             water(here, -8_000.0),
         ];
-        tell_apart(&mut waters);
+        disambiguate_names(&mut waters);
         let names = waters.map(|water| water.name);
         assert_eq!(names[0], format!("{here} (H 29, Z 31 µT)"));
         assert_eq!(names[1], there);

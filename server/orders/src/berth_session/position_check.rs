@@ -1,65 +1,71 @@
-//! Whether she can lie where a reading at the berth says, and when it says.
+//! Plausibility of the place and the time of a reading at the berth.
 //!
-//! What always holds: a reading is doubted by what the server knows without it, the port of
-//! the order and the vessel's own track; where it knows neither there is no doubt.
+//! What always holds: a reading is refused by independent knowledge alone, the port of the order
+//! and the vessel's own track. Without either it is accepted.
 
-use crate::berth_session::plan::READING_HOLDS_S;
-use crate::firms::port_meant;
+use crate::berth_session::plan::READING_VALIDITY_S;
+use crate::firms::named_port;
 use crate::work_orders::refusal::{Cure, Refusal};
+use crate::work_orders::summary::Summary;
 use binnacle_adjustment::adjust::ReadingForm;
 use binnacle_compass::position::Position;
 use binnacle_compass::result::SampleDiagnostic;
 use binnacle_fleet::analysis;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 
-/// The farthest berth of a port from where the list of ports has it, nautical miles.
-const FROM_PORT_NM: f64 = 60.0;
-/// No ship of ours makes more, knots.
-const FASTEST_KN: f64 = 30.0;
-/// What a track and a berth on the chart differ by, nautical miles.
-const SLACK_NM: f64 = 5.0;
-/// So far from a reading the track is looked at, seconds.
-const AROUND_S: f64 = 48.0 * 3600.0;
+/// Largest distance of a berth from the listed position of its port, nautical miles.
+const MAX_BERTH_DISTANCE_NM: f64 = 60.0;
+/// Highest speed of a vessel, knots.
+const MAX_SPEED_KN: f64 = 30.0;
+/// Tolerance between a track and a berth on the chart, nautical miles.
+const TRACK_TOLERANCE_NM: f64 = 5.0;
+/// Period of the track around a reading, seconds.
+const TRACK_WINDOW_S: f64 = 48.0 * 3600.0;
 /// Mean radius of the earth, nautical miles.
 const EARTH_NM: f64 = 3440.07;
 
-/// Refuses a reading that no plan could be made from any more.
+/// Refuses a reading that is too old for a plan.
 ///
 /// # Errors
 /// Names the field.
-pub(crate) fn must_be_of_now(given: &ReadingForm, now: Time) -> Result<()> {
+pub(crate) fn check_reading_age(given: &ReadingForm, now: Time) -> Result<()> {
     let age_s = now.0.seconds_since(given.at);
-    if age_s > READING_HOLDS_S {
+    if age_s > READING_VALIDITY_S {
         return Err(Error::Invalid {
             field: "at",
             detail: format!(
-                "lies {:.0} hours back: a reading holds for {:.0}",
+                "is {:.0} hours old: a reading is valid for {:.0}",
                 age_s / 3600.0,
-                READING_HOLDS_S / 3600.0
+                READING_VALIDITY_S / 3600.0
             ),
         });
     }
     Ok(())
 }
 
-/// Why she cannot have lain there then; none where nothing speaks against it.
-pub(crate) async fn doubt(
+/// Refuses a reading at a place where the vessel cannot have been at that time.
+pub(crate) async fn check_position(
     app: &App,
-    (vessel, compass): (VesselId, CompassId),
-    port: &str,
+    summary: &Summary,
     given: &ReadingForm,
 ) -> Result<Option<Refusal>> {
     let Ok(berth) = Position::new(given.lat, given.lon) else {
         return Ok(None);
     };
-    if let Some(words) = not_in_port(berth, port) {
+    if let Some(words) = not_in_port(berth, &summary.port) {
         return Ok(Some(refusal(words)));
     }
-    let around = [-AROUND_S, AROUND_S].map(|s| Some(Time(given.at.plus_seconds(s))));
-    let chunks = analysis::chunks(&app.db, vessel, compass, around[0], around[1]).await?;
+    let around = [-TRACK_WINDOW_S, TRACK_WINDOW_S].map(|s| Some(Time(given.at.plus_seconds(s))));
+    let chunks = analysis::chunks(
+        &app.db,
+        summary.vessel_id,
+        summary.compass_id,
+        around[0],
+        around[1],
+    )
+    .await?;
     let mut nearest: Option<(f64, Position)> = None;
     for chunk in &chunks {
         for found in serde_json::from_str::<Vec<SampleDiagnostic>>(chunk)? {
@@ -69,7 +75,9 @@ pub(crate) async fn doubt(
             }
         }
     }
-    Ok(nearest.and_then(|seen| too_far(berth, seen)).map(refusal))
+    Ok(nearest
+        .and_then(|(apart_s, seen)| too_far(berth, apart_s, seen))
+        .map(refusal))
 }
 
 fn refusal(words: String) -> Refusal {
@@ -77,19 +85,19 @@ fn refusal(words: String) -> Refusal {
         refusal: "position_unlikely".to_owned(),
         words,
         could_be: vec![
-            "the position is another, perhaps east for west or north for south".to_owned(),
+            "the position is wrong, perhaps east for west or north for south".to_owned(),
             "it was read at another time".to_owned(),
-            "she lies in another port than the order says".to_owned(),
+            "the vessel is in another port than the order's".to_owned(),
         ],
         cures: vec![Cure::ReadAgain],
     }
 }
 
-/// By the list of ports; words that mean none of it tell nothing.
+/// Compares the position with the listed port. Unknown ports are not checked.
 fn not_in_port(berth: Position, port: &str) -> Option<String> {
-    let known = port_meant(port)?;
+    let known = named_port(port)?;
     let (apart_nm, name) = (distance_nm(berth, known.position), known.name);
-    (apart_nm > FROM_PORT_NM).then(|| {
+    (apart_nm > MAX_BERTH_DISTANCE_NM).then(|| {
         format!(
             "the position of the reading is {apart_nm:.0} nautical miles from {name}, where the \
              order is to be done"
@@ -97,19 +105,19 @@ fn not_in_port(berth: Position, port: &str) -> Option<String> {
     })
 }
 
-/// By her own track: where she was at the nearest time.
-fn too_far(berth: Position, (apart_s, seen): (f64, Position)) -> Option<String> {
+/// Compares the position with the nearest one on the vessel's track.
+fn too_far(berth: Position, apart_s: f64, seen: Position) -> Option<String> {
     let apart_nm = distance_nm(berth, seen);
     let hours = apart_s / 3600.0;
-    (apart_nm > SLACK_NM + FASTEST_KN * hours).then(|| {
+    (apart_nm > TRACK_TOLERANCE_NM + MAX_SPEED_KN * hours).then(|| {
         format!(
-            "the position of the reading is {apart_nm:.0} nautical miles from where her track \
-             has her, {hours:.1} hours from then"
+            "the position of the reading is {apart_nm:.0} nautical miles from the vessel's \
+                track, {hours:.1} hours apart"
         )
     })
 }
 
-/// Along a great circle.
+/// Great-circle distance, nautical miles.
 fn distance_nm(one: Position, other: Position) -> f64 {
     let [lat, other_lat] = [one, other].map(|place| place.lat_deg().to_radians());
     let [lon, other_lon] = [one, other].map(|place| place.lon_deg().to_radians());
@@ -149,7 +157,7 @@ mod tests {
 
     #[test]
     fn she_is_no_farther_than_she_can_have_steamed() {
-        assert!(too_far(at(43.0, -3.0), (600.0, at(44.0, -3.0))).is_some());
-        assert_eq!(too_far(at(43.0, -3.0), (7_200.0, at(44.0, -3.0))), None);
+        assert!(too_far(at(43.0, -3.0), 600.0, at(44.0, -3.0)).is_some());
+        assert_eq!(too_far(at(43.0, -3.0), 7_200.0, at(44.0, -3.0)), None);
     }
 }

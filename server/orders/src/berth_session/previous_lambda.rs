@@ -1,13 +1,14 @@
-//! What the compass's last adjustment told of λ, which one heading cannot tell from a change
+//! Estimate of λ from the compass's last adjustment. One heading cannot separate λ from a change
 //! of the ship's magnetism along the needle.
 //!
-//! What always holds: it is calculated anew from the record that was signed; and where the
-//! logbook has work on the hull or at the compass since, it is nothing to go by.
+//! What always holds: it is calculated from the signed record. It is not used after work on the
+//! hull or at the compass.
 
+use crate::work_orders::payload::basis::PreviousBerth;
 use binnacle_adjustment::adjust::{
     Adjustment, Circumstances, EarlierLambda, Limits, ReadingForm, Water,
 };
-use binnacle_adjustment::binnacle::{Binnacle, Setting};
+use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_compass::angle::Variation;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::model::Model;
@@ -17,27 +18,11 @@ use binnacle_platform::app::App;
 use binnacle_platform::db::row;
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, VesselId};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
-/// λ at an earlier berth.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct EarlierBerth {
-    /// As it was told.
-    pub lambda: EarlierLambda,
-    /// How the correctors stood then.
-    pub stood: Setting,
-}
-
-impl EarlierBerth {
-    /// With the correctors as this binnacle has them.
-    pub fn set_as(&self, binnacle: &Binnacle) -> Option<EarlierLambda> {
-        self.lambda.adapted_to(binnacle, &self.stood)
-    }
-}
-
-/// What of a record λ follows from.
+/// Fields of a record from which λ follows.
 #[derive(Deserialize)]
-struct Recorded {
+struct RecordedAdjustment {
     reading: ReadingForm,
     model_before: Model,
     earth_at_berth: Earth,
@@ -57,18 +42,18 @@ struct Before {
     binnacle: Binnacle,
 }
 
-/// What the compass's last adjustment that was completed told; none where there was none,
-/// or iron near the compass may be another since.
+/// Returns λ of the compass's last completed adjustment; `None` without one, or after a change of
+/// iron near the compass.
 ///
 /// # Errors
 /// When the database fails.
-pub(crate) async fn of_compass(
+pub(crate) async fn find_for_compass(
     app: &App,
     vessel: VesselId,
     compass: CompassId,
     now: Timestamp,
     logbook: &[LogbookEntry],
-) -> Result<Option<EarlierBerth>> {
+) -> Result<Option<PreviousBerth>> {
     let found = row!(
         &app.db,
         (Option<String>,),
@@ -82,18 +67,22 @@ pub(crate) async fn of_compass(
     let Some(record) = found.and_then(|(record,)| record) else {
         return Ok(None);
     };
-    // A record of a time when less was written down tells nothing.
-    let Ok(recorded) = serde_json::from_str::<Recorded>(&record) else {
+    // An early record lacks some of these fields.
+    let Ok(recorded) = serde_json::from_str::<RecordedAdjustment>(&record) else {
         return Ok(None);
     };
     let since = recorded.reading.at;
     let is_other_iron = logbook.iter().any(|entry| {
         changes_iron(entry.kind) && entry.from <= now && entry.to.unwrap_or(entry.from) >= since
     });
-    Ok(if is_other_iron { None } else { recorded.told() })
+    Ok(if is_other_iron {
+        None
+    } else {
+        recorded.estimate()
+    })
 }
 
-/// Whether λ may be another after it.
+/// Returns whether such work may change λ.
 fn changes_iron(kind: LogbookKind) -> bool {
     matches!(
         kind,
@@ -104,8 +93,8 @@ fn changes_iron(kind: LogbookKind) -> bool {
     )
 }
 
-impl Recorded {
-    fn told(&self) -> Option<EarlierBerth> {
+impl RecordedAdjustment {
+    fn estimate(&self) -> Option<PreviousBerth> {
         let variation = Variation::try_from(self.earth_at_berth.variation_deg).ok()?;
         let binnacle = &self.binnacle_before.binnacle;
         let adjustment = Adjustment {
@@ -124,9 +113,9 @@ impl Recorded {
             circumstances: Circumstances::default(),
             limits: Limits::default(),
         };
-        Some(EarlierBerth {
+        Some(PreviousBerth {
             lambda: EarlierLambda::from_berth(self.reading.at, &adjustment).ok()??,
-            stood: binnacle.setting.clone(),
+            setting: binnacle.setting.clone(),
         })
     }
 }

@@ -1,14 +1,18 @@
-//! What a second reading of the field tells, and what to plan from where it calls for that.
+//! Judgement of a second reading, and the reading to replan from.
 //!
-//! What always holds: it is judged against the correctors as they are said to stand, by
-//! the first reading and the model that was held against that.
+//! What always holds: it is compared with the reported settings of the correctors, by the first
+//! reading and its model.
 
-use crate::berth_session::berth_reading::{Read, check};
-use crate::berth_session::plan::calculate;
-use crate::berth_session::planning_inputs::{Basis, Prepared};
-use crate::berth_session::second_reading_api::{AgainSaid, AgainVerdict, ReadAgain};
-use crate::berth_session::steps::Moved;
-use crate::work_orders::order_state::Standing;
+use crate::berth_session::berth_reading::check;
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
+use crate::berth_session::planning_inputs::PlanRequest;
+use crate::work_orders::events::CorrectorMove;
+use crate::work_orders::order_state::OrderState;
+use crate::work_orders::payload::basis::Basis;
+use crate::work_orders::payload::recorded_reading::RecordedReading;
+use crate::work_orders::payload::recorded_second_reading::{
+    PARTS_WITH_VERTICAL, RecordedSecondReading, SecondReadingResult, SecondReadingVerdict,
+};
 use crate::work_orders::refusal::Refusal;
 use binnacle_adjustment::adjust::{
     AdjustError, CardCheck, CompletedStep, Corrector, PostCheck, ReadingForm, SecondReadingForm,
@@ -16,38 +20,37 @@ use binnacle_adjustment::adjust::{
 };
 use binnacle_adjustment::berth::BerthReading;
 use binnacle_adjustment::binnacle::Binnacle;
-use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
 
-/// Parts of a reading that has the vertical one.
-pub(crate) const WHOLE: usize = 3;
-
 const FITS_UNPLANNED: &str =
-    "the correctors do what they should where they are said to stand: plan anew from this reading";
-const BEYOND: &str = "the correctors seem to stand as planned, but more is left than the limits \
-    allow: read once more, away from steel and cranes; if it is so again, plan anew from this \
-    reading";
+    "the correctors act as they should at the reported settings: replan from this reading";
+const BEYOND_LIMITS: &str = "the correctors seem to stand as planned, but the residuals exceed \
+    the limits: read again, away from steel and cranes; if the result is the same, replan from \
+    this reading";
 
-/// A second reading as it was given, as one of its own, and as the science takes it.
-pub(crate) struct Second {
+/// Second reading as it was sent, as a form of its own, and as the planner takes it.
+pub(crate) struct SecondReading {
     given: SecondReadingForm,
     pub(crate) form: ReadingForm,
     reading: BerthReading,
 }
 
-impl Second {
-    pub(crate) fn new(given: SecondReadingForm, prepared: &Prepared) -> Result<Second> {
-        let form = given.as_reading(&prepared.given);
+impl SecondReading {
+    pub(crate) fn new(
+        given: SecondReadingForm,
+        plan_request: &PlanRequest,
+    ) -> Result<SecondReading> {
+        let form = given.as_reading(&plan_request.given);
         let form = form.map_err(|error| Error::Invalid {
             field: error.field,
             detail: error.what,
         })?;
-        let reading = form.reading(prepared.basis.variation()?);
+        let reading = form.reading(plan_request.basis.variation()?);
         let reading = reading.map_err(|error| Error::Invalid {
             field: "forward, starboard",
             detail: error.to_string(),
         })?;
-        Ok(Second {
+        Ok(SecondReading {
             given,
             form,
             reading,
@@ -56,11 +59,11 @@ impl Second {
 
     fn read(
         &self,
-        prepared: &Prepared,
+        plan_request: &PlanRequest,
         steps: &[CompletedStep],
     ) -> std::result::Result<PostCheck, AdjustError> {
         check_second_reading(
-            &prepared.adjustment(),
+            &plan_request.adjustment(),
             steps,
             &self.reading,
             self.form.vertical(),
@@ -69,20 +72,20 @@ impl Second {
         )
     }
 
-    /// What it told, and what to plan from where it calls for a plan from itself: also
-    /// where it fits, and there is no plan that was followed.
+    /// Judges the reading; returns also the basis for a new plan, if one is needed. A reading
+    /// that fits needs one where no plan was followed.
     pub(crate) fn judge(
         self,
-        prepared: &Prepared,
+        plan_request: &PlanRequest,
         steps: &[CompletedStep],
-        looked_at: usize,
+        inspected_steps: usize,
         planned: bool,
-    ) -> std::result::Result<(ReadAgain, Option<Basis>), AdjustError> {
-        let again = self.read(prepared, steps)?;
-        let mut said = AgainSaid {
-            verdict: AgainVerdict::AsPlanned,
-            words: as_planned(steps, again.parts.len()),
-            parts: again.parts,
+    ) -> std::result::Result<(RecordedSecondReading, Option<Basis>), AdjustError> {
+        let check = self.read(plan_request, steps)?;
+        let mut result = SecondReadingResult {
+            verdict: SecondReadingVerdict::AsPlanned,
+            words: confirmation_text(steps, check.parts.len()),
+            parts: check.parts,
             step: None,
             setting: None,
             worst_residual_deg: None,
@@ -90,39 +93,39 @@ impl Second {
             refusals: Vec::new(),
             could_be: Vec::new(),
         };
-        let from_here = |learnt: &UpdatedPrediction, binnacle: Binnacle| {
-            let mut basis = prepared.basis.clone();
-            basis.model.model = learnt.model_after.clone();
+        let from_here = |updated: &UpdatedPrediction, binnacle: Binnacle| {
+            let mut basis = plan_request.basis.clone();
+            basis.model.model = updated.model_after.clone();
             basis.binnacle = binnacle;
-            // The first reading was held against it.
+            // The first reading was already compared with it.
             basis.earlier = None;
             basis.is_updated_here = true;
             basis
         };
-        let (mut foretold, mut anew) = (None, None);
-        match again.verdict {
-            Verdict::AsPlanned { updated: learnt } if planned => foretold = Some(*learnt),
-            Verdict::AsPlanned { updated: learnt } => {
-                said.verdict = AgainVerdict::Replan;
-                FITS_UNPLANNED.clone_into(&mut said.words);
-                let standing = prepared.adjustment().standing().clone();
-                anew = Some(from_here(
-                    &learnt,
-                    prepared.binnacle.with_setting(standing)?,
+        let (mut prediction, mut basis_to_plan_from) = (None, None);
+        match check.verdict {
+            Verdict::AsPlanned { updated } if planned => prediction = Some(*updated),
+            Verdict::AsPlanned { updated } => {
+                result.verdict = SecondReadingVerdict::Replan;
+                FITS_UNPLANNED.clone_into(&mut result.words);
+                let setting = plan_request.adjustment().standing().clone();
+                basis_to_plan_from = Some(from_here(
+                    &updated,
+                    plan_request.binnacle.with_setting(setting)?,
                 ));
-                foretold = Some(*learnt);
+                prediction = Some(*updated);
             }
             Verdict::Replan {
-                updated: learnt,
+                updated,
                 refusals,
                 binnacle,
                 ..
             } => {
-                said.verdict = AgainVerdict::Replan;
-                BEYOND.clone_into(&mut said.words);
-                said.refusals = refusals.iter().map(Refusal::from).collect();
-                anew = Some(from_here(&learnt, *binnacle));
-                foretold = Some(*learnt);
+                result.verdict = SecondReadingVerdict::Replan;
+                BEYOND_LIMITS.clone_into(&mut result.words);
+                result.refusals = refusals.iter().map(Refusal::from).collect();
+                basis_to_plan_from = Some(from_here(&updated, *binnacle));
+                prediction = Some(*updated);
             }
             Verdict::Slip {
                 step,
@@ -130,62 +133,70 @@ impl Second {
                 setting,
                 ..
             } => {
-                said.verdict = AgainVerdict::Slip;
-                said.words = suspected(steps, step, slip);
-                said.step = u32::try_from(looked_at).ok().map(|before| before + step);
-                said.setting = Some(setting);
+                result.verdict = SecondReadingVerdict::Slip;
+                result.words = slip_text(steps, step, slip);
+                result.step = u32::try_from(inspected_steps)
+                    .ok()
+                    .map(|before| before + step);
+                result.setting = Some(setting);
             }
             Verdict::Unexplained {
                 misreadings: mistakes,
             } => {
-                said.verdict = AgainVerdict::Unexplained;
-                said.words = unexplained(looked_at);
-                said.could_be = mistakes.iter().map(ToString::to_string).collect();
-                if let Some(card) = again.card.filter(CardCheck::is_refused) {
-                    said.words = card.summary();
-                    said.could_be.extend(card.suspects());
+                result.verdict = SecondReadingVerdict::Unexplained;
+                result.words = unexplained_text(inspected_steps);
+                result.could_be = mistakes.iter().map(ToString::to_string).collect();
+                if let Some(card) = check.card.filter(CardCheck::is_refused) {
+                    result.words = card.summary();
+                    result.could_be.extend(card.suspects());
                 }
             }
         }
-        said.worst_residual_deg = foretold.as_ref().map(|learnt| learnt.worst_residual_deg);
-        said.widest_band_deg = foretold.as_ref().map(|learnt| learnt.widest_band_deg);
-        let read = ReadAgain {
+        result.worst_residual_deg = prediction
+            .as_ref()
+            .map(|updated| updated.worst_residual_deg);
+        result.widest_band_deg = prediction.as_ref().map(|updated| updated.widest_band_deg);
+        let recorded = RecordedSecondReading {
             given: self.given,
-            said,
-            learnt: foretold,
-            anew: None,
+            result,
+            prediction,
+            reading_to_plan_from: None,
         };
-        Ok((read, anew))
+        Ok((recorded, basis_to_plan_from))
     }
 }
 
-/// Whether the reading that did not fit fits the correctors as they are said to stand now.
-pub(crate) async fn is_explained_by(app: &App, standing: &Standing, moved: &Moved) -> Result<bool> {
-    let Some(disproof) = standing.disproof() else {
+/// Returns whether reported settings explain a second reading that did not fit.
+pub(crate) async fn explains_second_reading(
+    slots: &CorrectorPlanSlots,
+    state: &OrderState,
+    report: &CorrectorMove,
+) -> Result<bool> {
+    let Some(contradiction) = state.contradicting_reading() else {
         return Ok(false);
     };
-    let mut before = standing.clone();
-    before.step_back();
-    let mut prepared = before.prepared()?;
-    prepared.moved_to = Some(moved.after.clone());
-    if let Some(anew) = &moved.learnt_anew {
-        prepared.binnacle = anew.binnacle.clone();
+    let mut before = state.clone();
+    before.restore_first_reading();
+    let mut plan_request = before.plan_request()?;
+    plan_request.moved_to = Some(report.after.clone());
+    if let Some(revised) = &report.revised_strength {
+        plan_request.binnacle = revised.binnacle.clone();
     }
-    let second = Second::new(disproof.given.clone(), &prepared)?;
-    let again = calculate(app, move || second.read(&prepared, &[])).await?;
+    let second = SecondReading::new(contradiction.given.clone(), &plan_request)?;
+    let check = slots.run(move || second.read(&plan_request, &[])).await?;
     Ok(matches!(
-        again.verdict,
+        check.verdict,
         Verdict::AsPlanned { .. } | Verdict::Replan { .. }
     ))
 }
 
-/// The second reading as one to plan from, held against what is known now.
-pub(crate) fn to_plan_from(basis: Basis, given: ReadingForm) -> Result<Box<Read>> {
+/// Turns a second reading into one to plan from, checked against the present knowledge.
+pub(crate) fn as_first_reading(basis: Basis, given: ReadingForm) -> Result<Box<RecordedReading>> {
     let (checked, refusal) = match check(&given, &basis)? {
         Ok(checked) => (Some(checked), None),
         Err(refusal) => (None, Some(refusal)),
     };
-    Ok(Box::new(Read {
+    Ok(Box::new(RecordedReading {
         given,
         basis: Some(basis),
         checked,
@@ -193,29 +204,29 @@ pub(crate) fn to_plan_from(basis: Basis, given: ReadingForm) -> Result<Box<Read>
     }))
 }
 
-fn unexplained(looked_at: usize) -> String {
-    let steps = match looked_at {
+fn unexplained_text(inspected_steps: usize) -> String {
+    let steps = match inspected_steps {
         0 => "one of its steps",
-        _ => "a step that nobody has looked at since",
+        _ => "a step that nobody has inspected since",
     };
     format!(
-        "neither the plan nor a slip in {steps} explains what was read: look at every step and at \
-         the magnetometer, and read again"
+        "neither the plan nor a slip in {steps} explains the reading: inspect every step and the \
+            magnetometer, and read again"
     )
 }
 
-/// What is confirmed, and what is not.
-fn as_planned(steps: &[CompletedStep], parts: usize) -> String {
+/// Words for a reading that confirms the steps.
+fn confirmation_text(steps: &[CompletedStep], parts: usize) -> String {
     let heels = |done: &CompletedStep| done.step.corrector == Corrector::Heeling;
-    let mut words = "the correctors do what was planned".to_owned();
-    if parts < WHOLE && steps.iter().any(heels) {
-        words += "; the vertical part was not read both times, and nothing confirms the heeling \
-                  magnets";
+    let mut words = "the correctors act as planned".to_owned();
+    if parts < PARTS_WITH_VERTICAL && steps.iter().any(heels) {
+        words += "; the vertical part was not read both times, so nothing confirms the heeling \
+            magnets";
     }
     words
 }
 
-fn suspected(steps: &[CompletedStep], number: u32, slip: Slip) -> String {
+fn slip_text(steps: &[CompletedStep], number: u32, slip: Slip) -> String {
     let step = steps.get((number as usize).saturating_sub(1));
     let words = step.map_or("", |done| done.step.words.as_str());
     let how = match slip {
@@ -224,7 +235,7 @@ fn suspected(steps: &[CompletedStep], number: u32, slip: Slip) -> String {
         Slip::NotDone => "it was not done".to_owned(),
     };
     format!(
-        "look at the step \"{words}\": by the field, {how}. Say how the correctors stand; where \
-         they stand as planned, or are put right, read again"
+        "inspect the step \"{words}\": by the field, {how}. Report the settings of the \
+            correctors; if they are as planned, or corrected, read again"
     )
 }

@@ -1,26 +1,23 @@
-//! The magnetometer read once more, after the steps: whether the correctors do what was
-//! planned, also where the compass could not show it on the berth's heading.
+//! Second reading of the magnetometer, after the steps: it confirms the correctors even if the
+//! compass cannot show them on the berth's heading.
 //!
-//! What always holds: it is optional, and what it says is kept. One that confirms the plan
-//! gives the order its model and its residuals; one that does not holds back completion
-//! until the field was read as foretold, a plan was made from this very reading, or someone
-//! has found the correctors to stand otherwise.
+//! What always holds: the reading is optional, and its result is kept. One that confirms the plan
+//! updates the model and the residuals. One that does not blocks completion until the field is
+//! read as predicted, a plan is made from this reading, or other settings are reported.
 
-use crate::berth_session::berth_reading::{Read, must_be_numbers};
-use crate::berth_session::plan::{calculate, must_still_hold};
-use crate::berth_session::second_reading::{Second, WHOLE, to_plan_from};
-use crate::completion::complete;
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::order::{Order, State};
-use crate::work_orders::order_state::Standing;
-use crate::work_orders::order_update;
-use crate::work_orders::refusal::Refusal;
-use crate::work_orders::shown;
+use crate::berth_session::berth_reading::check_reading_ranges;
+use crate::berth_session::plan::require_current_reading;
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
+use crate::berth_session::second_reading::{SecondReading, as_first_reading};
+use crate::berth_session::steps::require_after_last_step;
+use crate::work_orders::events::OrderEvent;
+use crate::work_orders::order::Order;
+use crate::work_orders::order_state::OrderState;
+use crate::work_orders::payload::recorded_second_reading::PARTS_WITH_VERTICAL;
+use crate::work_orders::state::State;
+use crate::work_orders::{load_order, prepare_update};
 use axum::extract::{FromRef, State as Shared};
-use binnacle_adjustment::adjust::{
-    FieldComponent, ReadingForm, SecondReadingForm, UpdatedPrediction,
-};
-use binnacle_adjustment::binnacle::Setting;
+use binnacle_adjustment::adjust::{ReadingForm, SecondReadingForm};
 use binnacle_platform::access::PartyWriter;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -28,144 +25,77 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Valid};
 use binnacle_platform::idempotency::Key;
 use binnacle_platform::ids::OrderId;
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
-
-/// A second reading as the log has it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct ReadAgain {
-    /// What was read.
-    pub given: SecondReadingForm,
-    /// What it told.
-    #[serde(flatten)]
-    pub said: AgainSaid,
-    /// What is foretold now, where it told that.
-    pub learnt: Option<UpdatedPrediction>,
-    /// The reading to plan from anew, where what is left is beyond the limits.
-    pub anew: Option<Box<Read>>,
-}
-
-impl ReadAgain {
-    /// Whether it does not confirm how the correctors stand.
-    pub(crate) fn is_disproof(&self) -> bool {
-        self.said.verdict != AgainVerdict::AsPlanned
-    }
-}
-
-/// What a second reading told.
-#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
-#[schema(as = SecondReadingSaid)]
-pub struct AgainSaid {
-    /// In a word.
-    pub verdict: AgainVerdict,
-    /// In words.
-    pub words: String,
-    /// Forward, to starboard and, where it was read both times, down.
-    pub parts: Vec<FieldComponent>,
-    /// The step that is suspected, of all that were done since the first reading, from 1.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub step: Option<u32>,
-    /// How the correctors would stand with that slip.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub setting: Option<Setting>,
-    /// The worst residual foretold now, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub worst_residual_deg: Option<f64>,
-    /// The widest 95 % band now, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub widest_band_deg: Option<f64>,
-    /// What is beyond the limits.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schema(required = false)]
-    pub refusals: Vec<Refusal>,
-    /// Mistakes each of which alone would explain it.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schema(required = false)]
-    pub could_be: Vec<String>,
-}
-
-/// What a second reading came to, in a word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(as = SecondReadingVerdict)]
-pub enum AgainVerdict {
-    /// The correctors do what was planned.
-    AsPlanned,
-    /// They seem to, but what is left is beyond the limits, or no plan led here: read once
-    /// more, or plan anew from this reading.
-    Replan,
-    /// A step is suspected: look at it, and say how the correctors stand.
-    Slip,
-    /// Nothing explains it: read again.
-    Unexplained,
-}
 
 pub(crate) fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    CorrectorPlanSlots: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new().routes(routes!(read_field_again))
 }
 
-/// Send what the magnetometer reads after the steps
+/// Send the magnetometer reading after the steps
 ///
-/// With it a slip that the berth's heading hides is found: the field shows what the compass
-/// on one heading cannot. Optional; without it such a slip can only be found at sea.
+/// It finds slips that the compass cannot show on the berth's heading. It is optional: without it
+/// such a slip can only be found at sea.
 #[utoipa::path(post, path = "/work-orders/{id}/second-reading", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = SecondReadingForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "Not before all steps are done, or nothing was moved", body = Problem),
+              (status = 409, description = "A step is not done, or nothing was moved", body = Problem),
               (status = 422, body = Problem)))]
 async fn read_field_again(
     Shared(app): Shared<App>,
+    Shared(slots): Shared<CorrectorPlanSlots>,
     request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(given): Valid<SecondReadingForm>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "second reading", &given)?;
-    let (whole, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "second reading", &given)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
-    let mut standing = whole.standing();
-    standing.step_back();
-    must_be_done(&standing)?;
-    let prepared = standing.prepared()?;
-    must_still_hold(&app, &whole.summary, &prepared).await?;
-    let second = Second::new(given, &prepared)?;
+    let mut state = stored.state();
+    state.restore_first_reading();
+    require_steps_done(&state)?;
+    let plan_request = state.plan_request()?;
+    require_current_reading(&app, &stored.summary, &plan_request).await?;
+    let second = SecondReading::new(given, &plan_request)?;
     let form = second.form.clone();
-    must_be_numbers(&form, app.clock.now().into())?;
-    complete::must_follow_the_steps(&whole, form.at.into())?;
-    must_answer_a_disproof(&standing, &form)?;
-    // Of a step that someone has looked at since, no slip is suspected any more.
-    let looked_at = standing.looked_at;
-    let steps = standing.steps[looked_at..].to_vec();
-    let planned = standing.plan.is_some();
-    let judge = move || second.judge(&prepared, &steps, looked_at, planned);
-    let (mut judged, basis) = calculate(&app, judge).await?;
-    judged.anew = basis.map(|basis| to_plan_from(basis, form)).transpose()?;
-    if let Some(mut change) = update.begin(&whole).await? {
+    check_reading_ranges(&form, app.clock.now().into())?;
+    require_after_last_step(&stored, form.at.into())?;
+    require_vertical_part(&state, &form)?;
+    // A slip is only suspected in steps that nobody has inspected since.
+    let inspected_steps = state.inspected_steps;
+    let steps = state.steps[inspected_steps..].to_vec();
+    let planned = state.plan.is_some();
+    let judge = move || second.judge(&plan_request, &steps, inspected_steps, planned);
+    let (mut judged, basis) = slots.run(judge).await?;
+    judged.reading_to_plan_from = basis
+        .map(|basis| as_first_reading(basis, form))
+        .transpose()?;
+    if let Some(mut change) = update.begin(&stored).await? {
         change
-            .append(Content::SecondReading(Box::new(judged)))
+            .append(OrderEvent::SecondReading(Box::new(judged)))
             .await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
-fn must_be_done(standing: &Standing) -> Result<()> {
-    if let Some(step) = standing.next_step() {
+fn require_steps_done(state: &OrderState) -> Result<()> {
+    if let Some(step) = state.next_step() {
         let number = step.number;
         return Err(Error::WrongState(format!("step {number} is not done")));
     }
-    let is_moved = standing.state == State::Measured && standing.was_moved();
-    if standing.state == State::Adjusting || is_moved {
+    let is_moved = state.state == State::Measured && state.has_moved_correctors();
+    if state.state == State::Adjusting || is_moved {
         return Ok(());
     }
     Err(Error::WrongState(
@@ -173,17 +103,17 @@ fn must_be_done(standing: &Standing) -> Result<()> {
     ))
 }
 
-/// What a part of the field disproved is not confirmed without that part.
-fn must_answer_a_disproof(standing: &Standing, form: &ReadingForm) -> Result<()> {
-    let disproof = standing.disproof();
-    let was_whole = disproof.is_some_and(|again| again.said.parts.len() == WHOLE);
+/// Refuses a reading without the part of the field that contradicted the steps.
+fn require_vertical_part(state: &OrderState, form: &ReadingForm) -> Result<()> {
+    let contradiction = state.contradicting_reading();
+    let was_whole =
+        contradiction.is_some_and(|second| second.result.parts.len() == PARTS_WITH_VERTICAL);
     if form.down.is_some() || !was_whole {
         return Ok(());
     }
     Err(Error::Invalid {
         field: "down",
-        detail: "the last reading did not confirm the steps, and had a vertical part: read that \
-                 again too"
+        detail: "is required: the last reading did not confirm the steps, and had a vertical part"
             .to_owned(),
     })
 }

@@ -1,152 +1,84 @@
-//! Steps at the binnacle: what the compass read after each, and what follows.
+//! Steps at the binnacle: the compass reading after each, and the consequence.
 
-use crate::berth_session::plan::{Planned, calculate, refusals};
-use crate::berth_session::planning_inputs::Prepared;
-use crate::work_orders::order_state::{Standing, Strength};
+use crate::berth_session::plan::refusals;
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
+use crate::berth_session::planning_inputs::PlanRequest;
+use crate::work_orders::events::{CorrectorMove, OrderEvent, RecordedStep, RevisedStrength};
+use crate::work_orders::order_state::{InferredStrength, OrderState};
+use crate::work_orders::payload::chosen_plan::ChosenPlan;
+use crate::work_orders::payload::step_result::{StepResult, StepVerdict};
 use crate::work_orders::refusal::Refusal;
+use crate::work_orders::store::StoredOrder;
 use binnacle_adjustment::adjust::{
     AdjustError, Outcome, Step, StepCheck, check_step, check_step_with_setting, check_total_turn,
 };
-use binnacle_adjustment::binnacle::{Binnacle, Setting};
-use binnacle_platform::app::App;
-use binnacle_platform::error::Result;
+use binnacle_adjustment::binnacle::Setting;
+use binnacle_platform::error::{Error, Result};
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// What the compass read after a step.
+/// Compass reading after a step.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = StepReading, example = json!({ "after_deg": 308.5 }))]
-pub(crate) struct StepRead {
-    /// What it read before; the last reading where it is not said.
+pub(crate) struct StepReading {
+    /// Reading before the step; the last known reading by default.
     #[schema(minimum = 0, maximum = 360)]
     pub before_deg: Option<f64>,
-    /// What it reads now.
+    /// Reading after the step.
     #[schema(minimum = 0, maximum = 360)]
     pub after_deg: f64,
 }
 
-/// What became of a step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct StepSaid {
-    /// The step's number in its plan.
-    pub number: u32,
-    /// Compass reading before the step, degrees.
-    pub before_deg: f64,
-    /// Compass reading after the step, degrees.
-    pub after_deg: f64,
-    /// Expected turn of the compass, degrees.
-    pub expected_change_deg: f64,
-    /// Tolerance of the turn, degrees.
-    pub tolerance_deg: f64,
-    /// In a word.
-    pub verdict: Verdict,
-    /// In words.
-    pub words: String,
-}
-
-/// What became of a step, in a word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(as = StepVerdict)]
-pub enum Verdict {
-    /// It did what was expected.
-    Confirmed,
-    /// On this heading the compass does not show it, and showed nothing.
-    NotSeen,
-    /// The magnets are in with the wrong end; there is a new plan.
-    WrongEnd,
-    /// The corrector is of another strength than was taken; there is a new plan.
-    OtherStrength,
-    /// Nothing explains it: read again.
-    Unexplained,
-}
-
-/// A step as the log has it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct StepDone {
-    /// What became of it.
-    #[serde(flatten)]
-    pub said: StepSaid,
-    /// The step.
-    pub step: Step,
-    /// How the correctors stand now; none when that is not known to be otherwise.
-    pub setting: Option<Setting>,
-    /// The binnacle, where a corrector was found to be of another strength.
-    pub binnacle: Option<Binnacle>,
-    /// The plan from there.
-    pub replanned: Option<Box<Planned>>,
-    /// Why there is none from there.
-    pub refusals: Vec<Refusal>,
-}
-
-/// How the correctors stand, as someone found or set them.
+/// Settings of the correctors, as someone found or made them.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = CorrectorSettings)]
-pub(crate) struct Stand {
-    /// How each stands.
+pub(crate) struct CorrectorReport {
+    /// Setting of each corrector.
     pub setting: Setting,
-    /// What the compass reads then, degrees.
+    /// Compass reading with these settings, degrees.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 360)]
     pub compass_deg: Option<f64>,
-    /// Why they do not stand as planned.
+    /// Reason for settings other than planned.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub note: Option<String>,
 }
 
-/// The same as the log has it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Moved {
-    /// How they stood before.
-    pub before: Setting,
-    /// How they stand now.
-    pub after: Setting,
-    /// What the compass reads then, degrees.
-    pub compass_deg: Option<f64>,
-    /// Why.
-    pub note: Option<String>,
-    /// Whether a second reading that did not fit before fits them as they stand now.
-    #[serde(default)]
-    pub explains_reading: bool,
-    /// What is known instead of a strength that was learnt from how they did not stand.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub learnt_anew: Option<Box<LearntAnew>>,
-    /// When.
-    pub at: Time,
-}
+/// Longest delay of a request that was made offline, seconds.
+const MAX_SEND_DELAY_S: f64 = 12.0 * 3600.0;
 
-/// What is known instead of a strength that was learnt before.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct LearntAnew {
-    /// The step from which it was learnt, its corrector where it stands.
-    pub step: Step,
-    /// The binnacle as it is now believed to be.
-    pub binnacle: Binnacle,
-}
-
-impl StepSaid {
-    /// Whether the next step may follow.
-    pub fn is_confirmed(&self) -> bool {
-        matches!(self.verdict, Verdict::Confirmed | Verdict::NotSeen)
+/// Refuses a time long before the last move of a corrector.
+pub(crate) fn require_after_last_step(stored: &StoredOrder, at: Time) -> Result<()> {
+    let moved = stored.log.iter().rev().find(|entry| {
+        matches!(
+            entry.content,
+            OrderEvent::Step(_) | OrderEvent::CorrectorSettings(_)
+        )
+    });
+    if moved.is_some_and(|moved| moved.at.0.seconds_since(at.0) > MAX_SEND_DELAY_S) {
+        return Err(Error::Invalid {
+            field: "at",
+            detail: "lies long before the last step".to_owned(),
+        });
     }
+    Ok(())
 }
 
-/// Judges a step by the compass before and after it; takes a while where there has to
-/// be a new plan.
+/// Judges a step by the compass before and after it. Takes seconds if a new plan is needed.
 ///
 /// # Errors
-/// When the readings are no headings.
+/// When the readings are not headings.
 pub(crate) fn judge(
-    prepared: &Prepared,
+    plan_request: &PlanRequest,
     step: Step,
     before_deg: f64,
     after_deg: f64,
-) -> std::result::Result<StepDone, AdjustError> {
-    let said = |verdict, words: String| StepSaid {
+) -> std::result::Result<RecordedStep, AdjustError> {
+    let result = |verdict, words: String| StepResult {
         number: step.number,
         before_deg,
         after_deg,
@@ -155,11 +87,11 @@ pub(crate) fn judge(
         verdict,
         words,
     };
-    let rechecked = check_step(&prepared.adjustment(), &step, before_deg, after_deg)?;
-    let (said, setting, binnacle, outcome) = match rechecked {
+    let check = check_step(&plan_request.adjustment(), &step, before_deg, after_deg)?;
+    let (result, setting, binnacle, outcome) = match check {
         StepCheck::Confirmed { off_deg, proven } => (
-            said(
-                Verdict::Confirmed,
+            result(
+                StepVerdict::Confirmed,
                 format!("within {:.1} degrees: {}", off_deg.abs(), proven),
             ),
             Some(step.setting_after.clone()),
@@ -167,9 +99,9 @@ pub(crate) fn judge(
             None,
         ),
         StepCheck::NotSeen { .. } => (
-            said(
-                Verdict::NotSeen,
-                "on this heading the compass does not show the step: look at it again".to_owned(),
+            result(
+                StepVerdict::NotSeen,
+                "on this heading the compass does not show the step: inspect it again".to_owned(),
             ),
             Some(step.setting_after.clone()),
             None,
@@ -180,8 +112,8 @@ pub(crate) fn judge(
             setting,
             outcome,
         } => (
-            said(
-                Verdict::WrongEnd,
+            result(
+                StepVerdict::WrongEnd,
                 format!(
                     "the compass turned by {turned_deg:.1} degrees: the magnets are in with \
                      the wrong end"
@@ -199,17 +131,17 @@ pub(crate) fn judge(
             outcome,
             ..
         } => (
-            said(Verdict::OtherStrength, of_strength(share, other_hole)),
+            result(StepVerdict::OtherStrength, strength_text(share, other_hole)),
             Some(setting),
             Some(*binnacle),
             Some(outcome),
         ),
         StepCheck::Unexplained { unmoved: true, .. } => (
-            said(
-                Verdict::Unexplained,
+            result(
+                StepVerdict::Unexplained,
                 format!(
-                    "the compass stands as it stood, where {:.1} degrees were expected: was the \
-                     step done, and does the card turn freely? Tap the bowl and read again",
+                    "the compass did not turn, where {:.1} degrees were expected: was the step \
+                        done, and does the card turn freely? Tap the bowl and read again",
                     step.change_deg
                 ),
             ),
@@ -218,12 +150,12 @@ pub(crate) fn judge(
             None,
         ),
         StepCheck::Unexplained { off_deg, .. } => (
-            said(
-                Verdict::Unexplained,
+            result(
+                StepVerdict::Unexplained,
                 format!(
                     "it is off by {off_deg:.1} degrees, which no strength of the corrector \
-                     explains: read again, see whether the ship moved, and look for magnetism \
-                     in the iron"
+                        explains: read again, check whether the ship moved, and look for \
+                        magnetism in the iron"
                 ),
             ),
             None,
@@ -231,13 +163,14 @@ pub(crate) fn judge(
             None,
         ),
     };
-    let said = match &setting {
-        Some(setting) if said.is_confirmed() => in_all(prepared, said, setting)?,
-        _ => said,
+    let result = match &setting {
+        Some(setting) if result.is_confirmed() => add_total_turn(plan_request, result, setting)?,
+        _ => result,
     };
-    let (replanned, refusals) = outcome.map_or((None, Vec::new()), |outcome| followed(*outcome));
-    Ok(StepDone {
-        said,
+    let (replanned, refusals) =
+        outcome.map_or((None, Vec::new()), |outcome| split_outcome(*outcome));
+    Ok(RecordedStep {
+        result,
         step,
         setting,
         binnacle,
@@ -246,70 +179,78 @@ pub(crate) fn judge(
     })
 }
 
-fn of_strength(share: f64, other_hole: Option<u16>) -> String {
-    let words = format!("the corrector is {share:.2} times as strong as was taken");
+fn strength_text(share: f64, other_hole: Option<u16>) -> String {
+    let words = format!("the corrector is {share:.2} times as strong as assumed");
     match other_hole {
         Some(hole) => format!(
-            "{words}, or stands at hole {hole}: count again; if it does, say how the correctors \
-             stand, or put it right and say so with what the compass then reads"
+            "{words}, or stands at hole {hole}: count again; if it does, report the settings, or \
+                correct it and report that with the new compass reading"
         ),
         None => words,
     }
 }
 
-/// What is known instead of a strength that this word disputes.
-pub(crate) async fn learn_anew(
-    app: &App,
-    standing: &Standing,
-    moved: &Moved,
-) -> Result<Option<Box<LearntAnew>>> {
-    let Some((prepared, strength)) = disputed(standing, moved)? else {
+/// Recalculates a strength that this report disputes.
+pub(crate) async fn revise_strength(
+    slots: &CorrectorPlanSlots,
+    state: &OrderState,
+    report: &CorrectorMove,
+) -> Result<Option<Box<RevisedStrength>>> {
+    let Some((plan_request, strength)) = disputed(state, report)? else {
         return Ok(None);
     };
-    let (after, compass_deg) = (moved.after.clone(), moved.compass_deg);
-    let learnt = calculate(app, move || {
-        let (adjustment, step) = (prepared.adjustment(), &strength.step);
+    let (after, compass_deg) = (report.after.clone(), report.compass_deg);
+    let revised = slots.run(move || {
+        let (adjustment, step) = (plan_request.adjustment(), &strength.step);
         check_step_with_setting(&adjustment, step, strength.before_deg, &after, compass_deg)
     });
-    let (step, binnacle) = learnt.await?;
-    Ok(Some(Box::new(LearntAnew { step, binnacle })))
+    let (step, binnacle) = revised.await?;
+    Ok(Some(Box::new(RevisedStrength { step, binnacle })))
 }
 
-/// The strength that this word disputes, with what was known before it was learnt.
-fn disputed(standing: &Standing, moved: &Moved) -> Result<Option<(Box<Prepared>, Box<Strength>)>> {
-    let mut standing = standing.clone();
-    if standing.setting() != Some(&moved.after) {
-        standing.step_back();
+/// Strength that this report disputes, with the binnacle as known before it.
+fn disputed(
+    state: &OrderState,
+    report: &CorrectorMove,
+) -> Result<Option<(Box<PlanRequest>, Box<InferredStrength>)>> {
+    let mut state = state.clone();
+    if state.setting() != Some(&report.after) {
+        state.restore_first_reading();
     }
-    let Some(strength) = standing.disputed_by(moved).cloned() else {
+    let Some(strength) = report.disputed_strength(&state).cloned() else {
         return Ok(None);
     };
-    let mut prepared = standing.prepared()?;
-    prepared.binnacle = strength.binnacle.clone();
-    Ok(Some((Box::new(prepared), Box::new(strength))))
+    let mut plan_request = state.plan_request()?;
+    plan_request.binnacle = strength.binnacle.clone();
+    Ok(Some((Box::new(plan_request), Box::new(strength))))
 }
 
-/// With what the steps so far come to together, where that is not what was expected.
-fn in_all(
-    prepared: &Prepared,
-    said: StepSaid,
+/// Adds a warning where the total turn of all steps differs from the plan.
+fn add_total_turn(
+    plan_request: &PlanRequest,
+    result: StepResult,
     setting: &Setting,
-) -> std::result::Result<StepSaid, AdjustError> {
-    let Some(first_deg) = prepared.given.compass_deg else {
-        return Ok(said);
+) -> std::result::Result<StepResult, AdjustError> {
+    let Some(first_deg) = plan_request.given.compass_deg else {
+        return Ok(result);
     };
-    let in_all = check_total_turn(&prepared.adjustment(), first_deg, setting, said.after_deg)?;
+    let in_all = check_total_turn(
+        &plan_request.adjustment(),
+        first_deg,
+        setting,
+        result.after_deg,
+    )?;
     if in_all.agrees() {
-        return Ok(said);
+        return Ok(result);
     }
     let words = format!(
-        "{}; but {}: see that each corrector stands as it should before you finish",
-        said.words, in_all
+        "{}; but {}: check that each corrector stands as it should before you finish",
+        result.words, in_all
     );
-    Ok(StepSaid { words, ..said })
+    Ok(StepResult { words, ..result })
 }
 
-fn followed(outcome: Outcome) -> (Option<Box<Planned>>, Vec<Refusal>) {
+fn split_outcome(outcome: Outcome) -> (Option<Box<ChosenPlan>>, Vec<Refusal>) {
     let refused = refusals(&outcome);
-    (Planned::of(outcome, 1).map(Box::new), refused)
+    (ChosenPlan::from_outcome(outcome, 1).map(Box::new), refused)
 }

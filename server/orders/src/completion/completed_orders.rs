@@ -1,22 +1,22 @@
-//! Adjustments that were completed in a time, for reports.
+//! Adjustments completed within a period, for reports.
 
-use crate::work_orders::offer_state::Offer;
-use crate::work_orders::order::State;
-use crate::work_orders::queries::whole;
+use crate::work_orders::offers::Offer;
+use crate::work_orders::state::State;
+use crate::work_orders::store;
 use binnacle_platform::db::{Db, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 
-/// An adjustment that was completed.
+/// Completed adjustment.
 #[derive(Clone, Debug)]
-pub struct Done {
+pub struct CompletedOrder {
     /// The order.
     pub order_id: OrderId,
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Its name.
     pub vessel_name: String,
     /// The compass.
     pub compass_id: CompassId,
@@ -24,36 +24,40 @@ pub struct Done {
     pub compass_name: String,
     /// The port.
     pub port: String,
-    /// When it was completed.
+    /// Time of completion.
     pub completed_at: Time,
     /// The firm's name.
     pub firm: Option<String>,
-    /// The firm, if it was offered to one.
+    /// The firm, if the order was offered to one.
     pub firm_id: Option<FirmId>,
-    /// How it stands.
+    /// Present state.
     pub state: State,
-    /// Whether headings at sea have spoken against it, whatever it stands as now.
+    /// Contradiction by headings at sea, whatever the present state.
     pub disproved: bool,
-    /// The fee that was agreed on, as it was offered or proposed, euros.
+    /// Agreed fee, as offered or proposed, euros.
     pub agreed_eur: Option<f64>,
 }
 
-/// Which adjustments that were completed.
+/// Period of completed adjustments.
 #[derive(Clone, Copy, Debug)]
-pub struct Span {
-    /// From this time on.
+pub struct CompletionPeriod {
+    /// Begin.
     pub from: Time,
-    /// Until this.
+    /// End.
     pub until: Time,
-    /// Those of before too that reached the server after this: the last report that there
-    /// was did not know of them.
+    /// Time of the last report: earlier completions that reached the server after it are
+    /// included.
     pub late_since: Option<Time>,
-    /// As was known at this time.
+    /// Time of the knowledge: later arrivals are left out.
     pub known_at: Time,
 }
 
-/// An operator's orders that were completed within a time, in order.
-pub async fn done(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Done>> {
+/// Lists an operator's orders completed within a period, in order.
+pub async fn completed_orders(
+    db: &Db,
+    operator: OperatorId,
+    span: CompletionPeriod,
+) -> Result<Vec<CompletedOrder>> {
     let found = rows!(
         db,
         (OrderId,),
@@ -72,20 +76,22 @@ pub async fn done(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Done>
     )?;
     let mut done = Vec::with_capacity(found.len());
     for (order,) in found {
-        let whole = whole(db, Tenant::Operator(operator), order).await?;
-        let standing = whole.standing();
-        let agreed_eur = standing.offers.holder().and_then(Offer::fee);
-        let verified = standing.verified.is_some_and(|said| said.has_passed());
-        let summary = whole.summary;
+        let stored = store::find(db, Tenant::Operator(operator), order).await?;
+        let state = stored.state();
+        let agreed_eur = state.offers.holder().and_then(Offer::fee);
+        let has_passed_at_sea = state
+            .verification
+            .is_some_and(|verification| verification.has_passed());
+        let summary = stored.summary;
         let disproved = match summary.state {
             State::Failed => true,
-            State::Closed => !verified,
+            State::Closed => !has_passed_at_sea,
             _ => false,
         };
         let Some(completed_at) = summary.completed_at else {
             continue;
         };
-        done.push(Done {
+        done.push(CompletedOrder {
             order_id: summary.id,
             vessel_id: summary.vessel_id,
             vessel_name: summary.vessel_name,

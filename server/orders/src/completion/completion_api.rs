@@ -1,19 +1,23 @@
-//! Photographs, completion, signatures, and the archive of evidence.
+//! Handlers of photographs, completion, signatures and evidence.
 
-use crate::berth_session::photos::{Caption, MAX_BYTES, MOST, PhotoTaken};
+use crate::berth_session::photos::{Caption, MAX_BYTES, MAX_PHOTOS};
 use crate::berth_session::plan::{
-    foretold, must_have_turned, must_keep_to_limits, must_still_hold,
+    predict, require_current_reading, require_total_turn, require_within_limits,
 };
-use crate::completion::complete::{self, Signed, SignedBy, Word};
-use crate::completion::record::Aboard;
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
+use crate::completion::complete;
+use crate::completion::record::VesselAndCompass;
+use crate::completion::sign_off::SignOff;
 use crate::evidence::{Evidence, File, Line, archive, predicted_csv, record_pdf, record_svg};
 use crate::firms::keys;
-use crate::work_orders::firm_view;
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::order::{Order, State};
-use crate::work_orders::order_update;
-use crate::work_orders::shown;
-use crate::work_orders::store::{self, Whole};
+use crate::work_orders::events::OrderEvent;
+use crate::work_orders::log::firm_view;
+use crate::work_orders::order::Order;
+use crate::work_orders::payload::photograph::Photo;
+use crate::work_orders::payload::signed_record::{KnownKey, RecordedSignature, SubmittedSignature};
+use crate::work_orders::state::State;
+use crate::work_orders::store::StoredOrder;
+use crate::work_orders::{load_order, prepare_update, store};
 use axum::body::{Body, Bytes};
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{DefaultBodyLimit, FromRef, State as Shared};
@@ -31,8 +35,8 @@ use binnacle_platform::ids::{OrderId, PhotoId};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// In which states photographs are added.
-const WITH_PHOTOS: [State; 8] = [
+/// States in which photographs may be added.
+const PHOTO_STATES: [State; 8] = [
     State::Planned,
     State::Accepted,
     State::OnBoard,
@@ -46,6 +50,7 @@ const WITH_PHOTOS: [State; 8] = [
 pub(crate) fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    CorrectorPlanSlots: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new()
@@ -63,7 +68,7 @@ where
 
 /// Add a photograph
 ///
-/// The body is the file as it is: JPEG, PNG or WebP, 10 MiB at most.
+/// The body is the file itself: JPEG, PNG or WebP, 10 MiB at most.
 #[utoipa::path(post, path = "/work-orders/{id}/photos", tag = "adjusting",
     params(("id" = OrderId, Path), Caption, Key),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
@@ -81,39 +86,41 @@ async fn add_photo(
     body: std::result::Result<Bytes, BytesRejection>,
 ) -> Result<Json<Order>> {
     let bytes = body.map_err(|_| Error::TooLarge(MAX_BYTES))?;
-    let taken = PhotoTaken::new(PhotoId::new(), &bytes, &caption)?;
-    let update = order_update(&app, request, writer, id, key, "photo", &taken.sha256)?;
-    let (whole, done) = update.look().await?;
+    let taken = Photo::new(PhotoId::new(), &bytes, &caption)?;
+    let update = prepare_update(&app, request, writer, id, key, "photo", &taken.sha256)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
-    whole.must_be(
-        &WITH_PHOTOS,
-        "nothing is added before a firm has it, or any more",
+    stored.require_state(
+        &PHOTO_STATES,
+        "photographs are added once a firm has it, until it is closed",
     )?;
-    if photos(&whole).count() >= MOST {
-        return Err(Error::WrongState(format!("there are {MOST} photographs")));
+    if photos(&stored).count() >= MAX_PHOTOS {
+        return Err(Error::WrongState(format!(
+            "there are {MAX_PHOTOS} photographs"
+        )));
     }
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         let (sha256, kind) = (taken.sha256.as_str(), taken.media_type.as_str());
         store::insert_photo(
             &mut change.tx,
-            &whole.summary,
-            taken.photo,
+            &stored.summary,
+            taken.id,
             kind,
             sha256,
             &bytes,
         )
         .await?;
-        change.append(Content::Photo(taken)).await?;
+        change.append(OrderEvent::Photo(taken)).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
-fn photos(whole: &Whole) -> impl Iterator<Item = (i64, &PhotoTaken)> {
-    whole.log.iter().filter_map(|entry| match &entry.content {
-        Content::Photo(photo) => Some((entry.seq, photo)),
+fn photos(stored: &StoredOrder) -> impl Iterator<Item = (i64, &Photo)> {
+    stored.log.iter().filter_map(|entry| match &entry.content {
+        OrderEvent::Photo(photo) => Some((entry.seq, photo)),
         _ => None,
     })
 }
@@ -128,8 +135,8 @@ async fn find_photo(
     reader: PartyReader,
     Id((id, photo)): Id<(OrderId, PhotoId)>,
 ) -> Result<Response> {
-    let summary = store::summary(&app.db, reader.tenant, id).await?;
-    let found = store::photo(&app.db, summary.vessel_id, id, photo).await?;
+    let summary = store::find_summary(&app.db, reader.tenant, id).await?;
+    let found = store::find_photo(&app.db, summary.vessel_id, id, photo).await?;
     let (media_type, bytes) = found.ok_or(Error::NotFound("photograph"))?;
     let headers = [
         (CONTENT_TYPE, media_type.as_str()),
@@ -141,50 +148,58 @@ async fn find_photo(
 
 /// Complete an adjustment
 ///
-/// By the adjuster's name, licence and typed signature. From that moment on the vessel's
-/// logbook has the adjustment, the ship gets the model that is foretold, and the card is
-/// a prediction until headings at sea agree.
+/// By the adjuster's name, licence and typed signature. From that moment on the logbook contains
+/// the adjustment, and the vessel receives the predicted model. The card is a prediction until
+/// headings at sea agree.
 #[utoipa::path(post, path = "/work-orders/{id}/complete", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Word,
+    params(("id" = OrderId, Path), Key), request_body = SignOff,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "A step is not done", body = Problem),
               (status = 422, body = Problem)))]
 async fn complete_work_order(
     Shared(app): Shared<App>,
+    Shared(slots): Shared<CorrectorPlanSlots>,
     request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(word): Valid<Word>,
+    Valid(sign_off): Valid<SignOff>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "completion", &word)?;
-    let (whole, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "completion", &sign_off)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
-    whole.must_be(&[State::Adjusting], "there is no plan that was followed")?;
-    let standing = whole.standing();
-    let prepared = standing.prepared()?;
-    must_still_hold(&app, &whole.summary, &prepared).await?;
-    must_keep_to_limits(&standing)?;
-    let (word, at) = word.checked(&whole, app.clock.now().into())?;
-    complete::must_stand_as_planned(&standing)?;
-    must_have_turned(&app, &standing, prepared).await?;
-    let learnt = foretold(&app, &standing).await?;
-    let aboard = aboard(&app, &whole).await?;
-    if let Some(mut change) = update.begin(&whole).await? {
-        Box::pin(complete::complete(&mut change, &aboard, learnt, word, at)).await?;
+    stored.require_state(&[State::Adjusting], "no plan was followed")?;
+    let state = stored.state();
+    let plan_request = state.plan_request()?;
+    require_current_reading(&app, &stored.summary, &plan_request).await?;
+    require_within_limits(&state)?;
+    let (sign_off, at) = sign_off.checked(&stored, app.clock.now().into())?;
+    complete::require_planned_setting(&state)?;
+    require_total_turn(&slots, &state, plan_request).await?;
+    let prediction = predict(&slots, &state).await?;
+    let vessel = load_vessel(&app, &stored).await?;
+    if let Some(mut change) = update.begin(&stored).await? {
+        Box::pin(complete::complete(
+            &mut change,
+            &vessel,
+            prediction,
+            sign_off,
+            at,
+        ))
+        .await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
-async fn aboard(app: &App, whole: &Whole) -> Result<Aboard> {
-    let summary = &whole.summary;
+async fn load_vessel(app: &App, stored: &StoredOrder) -> Result<VesselAndCompass> {
+    let summary = &stored.summary;
     let vessel = vessels::find_row(&app.db, summary.operator_id, summary.vessel_id).await?;
     let vessel = vessel.ok_or(Error::NotFound("vessel"))?;
-    Ok(Aboard {
+    Ok(VesselAndCompass {
         vessel_name: vessel.name,
         imo_number: vessel.imo_number,
         call_sign: vessel.call_sign,
@@ -195,39 +210,44 @@ async fn aboard(app: &App, whole: &Whole) -> Result<Aboard> {
 
 /// Sign the record with a firm's key
 ///
-/// An Ed25519 signature over the 32 octets of `record_sha256`. The order says whose key it
-/// is when the order's firm has registered it (`/firms/{id}/keys`), and otherwise that the
-/// key is unknown.
+/// An Ed25519 signature over the 32 bytes of `record_sha256`. The order names the owner of a key
+/// that the order's firm has registered (`/firms/{id}/keys`). Other keys are shown as unknown.
 #[utoipa::path(post, path = "/work-orders/{id}/signatures", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Signed,
+    params(("id" = OrderId, Path), Key), request_body = SubmittedSignature,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is no record yet", body = Problem),
-              (status = 422, description = "It is not this key's", body = Problem)))]
+              (status = 422, description = "The signature is not by this key", body = Problem)))]
 async fn sign_record(
     Shared(app): Shared<App>,
     request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(signed): Valid<Signed>,
+    Valid(signature): Valid<SubmittedSignature>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "signature", &signed)?;
-    let (whole, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "signature", &signature)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
-    let completed = whole.standing().completed;
+    let completed = stored.state().completion;
     let completed = completed.ok_or_else(no_record)?;
-    signed.checked(&completed.record_sha256)?;
-    if let Some(mut change) = update.begin(&whole).await? {
-        let holder = change.whole.summary.firm_id;
-        let key = keys::find_active(&mut change.tx, holder, &signed.public_key).await?;
-        let signed = SignedBy { signed, key };
-        change.append(Content::Signature(signed)).await?;
+    signature.checked(&completed.record_sha256)?;
+    if let Some(mut change) = update.begin(&stored).await? {
+        let holder = change.stored.summary.firm_id;
+        let key = keys::find_active(&mut change.tx, holder, &signature.public_key).await?;
+        let key = key.map(|key| KnownKey {
+            id: key.id,
+            name: key.name,
+            firm_id: key.firm_id,
+            firm_name: key.firm_name,
+        });
+        let recorded = RecordedSignature { signature, key };
+        change.append(OrderEvent::Signature(recorded)).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 fn no_record() -> Error {
@@ -236,7 +256,7 @@ fn no_record() -> Error {
 
 /// See the adjustment record
 ///
-/// The very octets that a firm's key signs the hash of.
+/// The exact bytes whose hash a firm's key signs.
 #[utoipa::path(get, path = "/work-orders/{id}/record.json", tag = "adjusting",
     params(("id" = OrderId, Path)),
     responses((status = 200, content_type = "application/json", body = String),
@@ -247,16 +267,15 @@ async fn find_record(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let summary = store::summary(&app.db, reader.tenant, id).await?;
-    let record = store::record(&app.db, summary.vessel_id, id).await?;
+    let summary = store::find_summary(&app.db, reader.tenant, id).await?;
+    let record = store::find_record(&app.db, summary.vessel_id, id).await?;
     let headers = [(CONTENT_TYPE, "application/json")];
     Ok((headers, record.ok_or_else(no_record)?).into_response())
 }
 
 /// Print the adjustment record
 ///
-/// The sheets that the evidence holds, drawn from `record.json`. A prediction, not a
-/// certificate.
+/// The sheets of the evidence, drawn from `record.json`. A prediction, not a certificate.
 #[utoipa::path(get, path = "/work-orders/{id}/record.pdf", tag = "adjusting",
     params(("id" = OrderId, Path)),
     responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
@@ -267,7 +286,7 @@ async fn print_record(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let bytes = made_of_record(&app, reader, id, record_pdf).await?;
+    let bytes = render_record(&app, reader, id, record_pdf).await?;
     Ok(record_file(id, "pdf", "application/pdf", bytes))
 }
 
@@ -284,13 +303,13 @@ async fn draw_record(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let text = made_of_record(&app, reader, id, record_svg).await?;
+    let text = render_record(&app, reader, id, record_svg).await?;
     Ok(record_file(id, "svg", "image/svg+xml", text))
 }
 
-/// The residuals that an adjustment record foretells, as CSV
+/// Get the predicted residuals of an adjustment record as CSV
 ///
-/// A line for each place and compass heading, with the 95 % band.
+/// One line for each place and compass heading, with the 95 % band.
 #[utoipa::path(get, path = "/work-orders/{id}/record.csv", tag = "adjusting",
     params(("id" = OrderId, Path)),
     responses((status = 200, content_type = "text/csv", body = String),
@@ -301,18 +320,18 @@ async fn tabulate_record(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let text = made_of_record(&app, reader, id, predicted_csv).await?;
+    let text = render_record(&app, reader, id, predicted_csv).await?;
     Ok(record_file(id, "csv", "text/csv; charset=utf-8", text))
 }
 
-async fn made_of_record<T: Send + 'static>(
+async fn render_record<T: Send + 'static>(
     app: &App,
     reader: PartyReader,
     id: OrderId,
     make: fn(&str) -> anyhow::Result<T>,
 ) -> Result<T> {
-    let summary = store::summary(&app.db, reader.tenant, id).await?;
-    let record = store::record(&app.db, summary.vessel_id, id).await?;
+    let summary = store::find_summary(&app.db, reader.tenant, id).await?;
+    let record = store::find_record(&app.db, summary.vessel_id, id).await?;
     let record = record.ok_or_else(no_record)?;
     Ok(tokio::task::spawn_blocking(move || make(&record)).await??)
 }
@@ -325,8 +344,8 @@ fn record_file(id: OrderId, extension: &str, kind: &str, body: impl Into<Body>) 
 
 /// Get the evidence of an adjustment
 ///
-/// One archive that `binnacle-server verify-evidence` checks, and that says how to check
-/// it by hand. A prediction, not a certificate.
+/// One archive that `binnacle-server verify-evidence` checks, with instructions for a check by
+/// hand. A prediction, not a certificate.
 #[utoipa::path(get, path = "/work-orders/{id}/evidence.zip", tag = "adjusting",
     params(("id" = OrderId, Path)),
     responses((status = 200, content_type = "application/zip", body = Vec<u8>),
@@ -337,17 +356,17 @@ async fn find_evidence(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let whole = store::whole(&app.db, reader.tenant, id).await?;
-    let vessel = whole.summary.vessel_id;
-    let record = store::record(&app.db, vessel, id).await?;
+    let stored = store::find(&app.db, reader.tenant, id).await?;
+    let vessel = stored.summary.vessel_id;
+    let record = store::find_record(&app.db, vessel, id).await?;
     let record = record.ok_or_else(no_record)?;
     let mut files = vec![File {
         name: "predicted.csv".to_owned(),
         bytes: predicted_csv(&record)?.into_bytes(),
     }];
-    for (seq, photo) in photos(&whole) {
-        let found = store::photo(&app.db, vessel, id, photo.photo).await?;
-        let (_, bytes) = found.ok_or_else(|| anyhow::anyhow!("a photograph is gone"))?;
+    for (seq, photo) in photos(&stored) {
+        let found = store::find_photo(&app.db, vessel, id, photo.id).await?;
+        let (_, bytes) = found.ok_or_else(|| anyhow::anyhow!("a photograph is missing"))?;
         let name = photo.file(seq);
         files.push(File { name, bytes });
     }
@@ -355,9 +374,9 @@ async fn find_evidence(
         name: "record.json".to_owned(),
         bytes: record.clone().into_bytes(),
     });
-    let lines = store::lines(&app.db, vessel, id, None, i64::MAX).await?;
-    // As many as were looked at: one that came meanwhile is in the next archive.
-    let lines = lines.into_iter().zip(&whole.log);
+    let lines = store::list_lines(&app.db, vessel, id, None, i64::MAX).await?;
+    // An entry written meanwhile is left for the next archive.
+    let lines = lines.into_iter().zip(&stored.log);
     let lines = lines.map(|((_, line, sha256), entry)| {
         let text = firm_view::line(reader.tenant, entry, line, &sha256)?;
         Ok(Line { text, sha256 })

@@ -4,5 +4,6 @@ pub mod complete;
 mod completed_orders;
 pub(crate) mod completion_api;
 mod record;
+mod sign_off;
 
-pub use completed_orders::{Done, Span, done};
+pub use completed_orders::{CompletedOrder, CompletionPeriod, completed_orders};

@@ -1,12 +1,14 @@
-//! The adjustment record: everything that an inspector may ask for, as canonical JSON.
+//! Adjustment record: everything that an inspector may need, as canonical JSON.
 //!
-//! What always holds: it is made once, when the order is completed, and kept as that
-//! text; a signature is over its hash. It says of itself that it is no certificate.
+//! What always holds: it is made once, at completion, and kept as that text; signatures cover its
+//! hash. It states that it is not a certificate.
 
-use crate::completion::complete::Word;
-use crate::work_orders::log_entry::{Content, canonical};
+use crate::completion::sign_off::SignOff;
+use crate::work_orders::events::OrderEvent;
+use crate::work_orders::log::canonical_json::canonical;
+use crate::work_orders::log::entry::Entry;
 use crate::work_orders::order::NOT_A_CERTIFICATE;
-use crate::work_orders::store::Whole;
+use crate::work_orders::store::StoredOrder;
 use binnacle_adjustment::adjust::{HeelingPlan, UpdatedPrediction};
 use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_fleet::compasses::Compass;
@@ -14,8 +16,8 @@ use binnacle_platform::error::Result;
 use binnacle_platform::time::Time;
 use serde_json::json;
 
-/// Whose compass it is.
-pub(crate) struct Aboard {
+/// Vessel and compass of a record.
+pub(crate) struct VesselAndCompass {
     pub(crate) vessel_name: String,
     pub(crate) imo_number: Option<String>,
     pub(crate) call_sign: Option<String>,
@@ -23,44 +25,44 @@ pub(crate) struct Aboard {
     pub(crate) compass: Compass,
 }
 
-/// The record of an order that is about to be completed.
-pub(crate) fn text(
-    aboard: &Aboard,
-    whole: &Whole,
-    learnt: &UpdatedPrediction,
-    word: &Word,
+/// Makes the record of an order that is being completed.
+pub(crate) fn make_record(
+    vessel: &VesselAndCompass,
+    stored: &StoredOrder,
+    prediction: &UpdatedPrediction,
+    sign_off: &SignOff,
     account: &str,
     after: &Binnacle,
 ) -> Result<String> {
-    let (summary, standing) = (&whole.summary, whole.standing());
-    let read = standing.first.as_deref().or(standing.read.as_ref());
+    let (summary, state) = (&stored.summary, stored.state());
+    let read = state.first_reading.as_deref().or(state.reading.as_ref());
     let basis = read.and_then(|read| read.basis.as_ref());
-    let plan = standing.plan.as_ref();
-    let before = standing.before.as_ref();
-    let again: Vec<_> = whole.log.iter().filter_map(second_reading).collect();
-    let hidden = standing.hidden_steps();
-    let found: Vec<_> = whole.log.iter().filter_map(settings).collect();
-    let steps: Vec<_> = whole.log.iter().filter_map(step).collect();
-    let photos: Vec<_> = whole.log.iter().filter_map(photo).collect();
+    let plan = state.plan.as_ref();
+    let before = state.before_adjustment.as_ref();
+    let second_readings: Vec<_> = stored.log.iter().filter_map(second_reading).collect();
+    let hidden = state.unconfirmed_steps();
+    let found: Vec<_> = stored.log.iter().filter_map(settings).collect();
+    let steps: Vec<_> = stored.log.iter().filter_map(step).collect();
+    let photos: Vec<_> = stored.log.iter().filter_map(photo).collect();
     canonical(&json!({
         "version": 1,
         "what": "record of a magnetic compass adjusted at the berth",
         "standing": NOT_A_CERTIFICATE,
         "order": summary.id,
         "vessel": {
-            "id": summary.vessel_id, "name": aboard.vessel_name, "imo_number": aboard.imo_number,
-            "call_sign": aboard.call_sign, "flag": aboard.flag,
+            "id": summary.vessel_id, "name": vessel.vessel_name, "imo_number": vessel.imo_number,
+            "call_sign": vessel.call_sign, "flag": vessel.flag,
         },
         "compass": {
-            "id": aboard.compass.id, "name": aboard.compass.name, "role": aboard.compass.role,
-            "make": aboard.compass.make, "serial_number": aboard.compass.serial_number,
+            "id": vessel.compass.id, "name": vessel.compass.name, "role": vessel.compass.role,
+            "make": vessel.compass.make, "serial_number": vessel.compass.serial_number,
         },
         "port": summary.port,
         "berth": summary.berth,
-        "adjusted_at": word.at,
+        "adjusted_at": sign_off.at,
         "adjuster": {
-            "name": word.adjuster_name, "licence": word.adjuster_licence, "firm": word.firm,
-            "signature": word.signature, "account": account,
+            "name": sign_off.adjuster_name, "licence": sign_off.adjuster_licence, "firm": sign_off.firm,
+            "signature": sign_off.signature, "account": account,
         },
         "data": basis.map(|basis| json!({
             "sha256": basis.model.input_hash, "estimator": basis.model.estimator,
@@ -72,7 +74,7 @@ pub(crate) fn text(
             "variation_deg": basis.variation_deg, "h_nt": basis.h_nt, "z_nt": basis.z_nt,
             "model": basis.field_model,
         })),
-        "limits": standing.limits,
+        "limits": state.limits,
         "waters": basis.map(|basis| &basis.waters),
         "reading": read.map(|read| &read.given),
         "berth_check": read.map(|read| &read.checked),
@@ -93,40 +95,40 @@ pub(crate) fn text(
         })),
         "steps_as_read": steps,
         "settings_as_said": found,
-        "second_readings": again,
+        "second_readings": second_readings,
         "not_shown": (!hidden.is_empty()).then(|| json!({ "steps": hidden, "words": NOT_SHOWN })),
         "predicted_before": before.map(|before| &before.deviations),
-        "predicted_after": learnt.after,
-        "model_after": learnt.model_after,
+        "predicted_after": prediction.after,
+        "model_after": prediction.model_after,
         "photos": photos,
         "log": { "entries": summary.last_seq, "last_sha256": summary.last_sha256 },
     }))
 }
 
-/// Of steps that neither compass nor magnetometer has shown.
+/// Note on steps that neither compass nor magnetometer confirms.
 const NOT_SHOWN: &str = "the compass does not show these steps on the berth's heading, and no \
     second reading of the magnetometer confirms them: a slip in one of them can only be found \
     by headings at sea";
 
-fn second_reading(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
-    let Content::SecondReading(read) = &entry.content else {
+fn second_reading(entry: &Entry) -> Option<serde_json::Value> {
+    let OrderEvent::SecondReading(read) = &entry.content else {
         return None;
     };
-    Some(json!({ "at": at(entry.at), "given": read.given, "said": read.said }))
+    Some(json!({ "at": at(entry.at), "given": read.given, "said": read.result }))
 }
 
-fn step(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
-    let Content::Step(done) = &entry.content else {
+fn step(entry: &Entry) -> Option<serde_json::Value> {
+    let OrderEvent::Step(done) = &entry.content else {
         return None;
     };
     Some(json!({
-        "at": at(entry.at), "said": done.said, "words": done.step.words,
+        "at": at(entry.at), "said": done.result, "words": done.step.words,
         "moved": done.setting.is_some(),
     }))
 }
 
-fn settings(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
-    let Content::CorrectorSettings(moved) = &entry.content else {
+fn settings(entry: &Entry) -> Option<serde_json::Value> {
+    let OrderEvent::CorrectorSettings(moved) = &entry.content else {
         return None;
     };
     Some(json!({
@@ -134,8 +136,8 @@ fn settings(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::
     }))
 }
 
-fn photo(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
-    let Content::Photo(photo) = &entry.content else {
+fn photo(entry: &Entry) -> Option<serde_json::Value> {
+    let OrderEvent::Photo(photo) = &entry.content else {
         return None;
     };
     Some(json!(photo))

@@ -1,8 +1,9 @@
-//! Port calls at which orders are to be done, and the calls that are known.
+//! Links between orders and port calls.
 //!
-//! Port calls are written elsewhere: they are only read here.
+//! Port calls are written elsewhere: this module only reads them.
 
-use crate::dispatch::port_call_changes::Alongside;
+use crate::work_orders::order_update::Change;
+use crate::work_orders::payload::port_call::Alongside;
 use anyhow::Context;
 use binnacle_platform::db::{Tx, execute, row};
 use binnacle_platform::error::Result;
@@ -10,7 +11,7 @@ use binnacle_platform::ids::{CallId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_schedule::ports::PortCode;
 
-/// A port call, as far as an order has to do with it.
+/// Port call, as far as orders need it.
 #[derive(Debug, sqlx::FromRow)]
 pub(crate) struct KnownCall {
     /// The call's id.
@@ -22,17 +23,17 @@ pub(crate) struct KnownCall {
 }
 
 impl KnownCall {
-    /// Returns where and when the vessel is alongside.
+    /// Port and times of the stay.
     ///
     /// # Errors
-    /// When the stored port is no port.
+    /// When the stored port is not a port code.
     pub(crate) fn alongside(&self) -> Result<Alongside> {
         let port = PortCode::parse(&self.port).context("a stored port")?;
         Ok(Alongside::new(port, self.eta, self.etd))
     }
 }
 
-/// Finds the call that a vessel is in at some time.
+/// Finds the call of a vessel at a time.
 pub(crate) async fn call_at(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Option<KnownCall>> {
     Ok(row!(
         in tx,
@@ -59,7 +60,7 @@ pub async fn link_once(tx: &mut Tx, vessel: VesselId, order: OrderId, call: Call
     Ok(())
 }
 
-/// Links an order to a call, whatever it was linked to.
+/// Links an order to a call, instead of any other.
 pub(crate) async fn link(
     tx: &mut Tx,
     vessel: VesselId,
@@ -77,7 +78,7 @@ pub(crate) async fn link(
     Ok(())
 }
 
-/// Returns the port of the call that an order is linked to.
+/// Returns the port of an order's linked call.
 pub(crate) async fn linked_port(
     tx: &mut Tx,
     vessel: VesselId,
@@ -94,4 +95,13 @@ pub(crate) async fn linked_port(
         order
     )?;
     Ok(found.map(|(port,)| port))
+}
+
+/// Links an order to the call at its new time.
+pub(crate) async fn link_call_at(change: &mut Change<'_>, at: Time) -> Result<()> {
+    let (vessel, id) = (change.stored.summary.vessel_id, change.stored.summary.id);
+    if let Some(call) = call_at(&mut change.tx, vessel, at).await? {
+        link(&mut change.tx, vessel, id, call.id).await?;
+    }
+    Ok(())
 }

@@ -2,11 +2,11 @@
 //!
 //! What always holds: a message is an entry of the order's log; no other firm reads it.
 
-use crate::dispatch::offer_requests::{message, must_be_own};
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::offer_state::{Between, Offer, OfferState, Offers};
-use crate::work_orders::order_update;
-use crate::work_orders::store;
+use crate::dispatch::offer_requests::{checked_message, require_own_firm};
+use crate::work_orders::events::{MessageSent, OrderEvent};
+use crate::work_orders::offers::{Offer, OfferState, Offers};
+use crate::work_orders::payload::exchange::Exchange;
+use crate::work_orders::{prepare_update, store};
 use axum::extract::{FromRef, State as Shared};
 use axum::http::StatusCode;
 use binnacle_platform::access::{PartyReader, PartyWriter};
@@ -31,45 +31,45 @@ where
     OpenApiRouter::new().routes(routes!(list_messages, send_message))
 }
 
-/// A message to be sent.
+/// Message to send.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NewOrderMessage, example = json!({ "text": "Is the gangway to port?" }))]
 struct NewMessage {
-    /// The firm that an operator writes to; may be left out where there is one.
+    /// Firm that the operator writes to; optional if there is one only.
     #[serde(default)]
     firm_id: Option<FirmId>,
-    /// In words, 2,000 characters at most.
+    /// Text, 2,000 characters at most.
     #[schema(min_length = 1, max_length = 2000)]
     text: String,
 }
 
-/// A message.
+/// Message about an order.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = OrderMessage)]
-struct Sent {
-    /// Its number in the order's log.
+struct Message {
+    /// Number in the order's log.
     seq: i64,
-    /// When it was sent.
+    /// Time of sending.
     at: Time,
-    /// Who sent it.
+    /// Name of the sender.
     by: String,
-    /// Whether someone of the firm's sent it, rather than of the operator's.
+    /// True if the firm sent it, false if the operator did.
     from_firm: bool,
     /// The firm.
     firm_id: FirmId,
     /// Its name.
     firm_name: String,
-    /// In words.
+    /// Text.
     text: String,
 }
 
-/// A page of messages.
+/// Page of messages.
 #[derive(Serialize, ToSchema)]
 #[schema(as = OrderMessageList)]
 struct MessageList {
-    /// The oldest first.
-    items: Vec<Sent>,
+    /// Messages, the oldest first.
+    items: Vec<Message>,
     /// `after` of the next page.
     #[schema(required)]
     next: Option<String>,
@@ -77,7 +77,7 @@ struct MessageList {
 
 /// List the messages about a work order
 ///
-/// A firm reads its own only. That the port call has moved is among them, from `Binnacle`.
+/// A firm reads its own only. Changes of the port call are among them, from `Binnacle`.
 #[utoipa::path(get, path = "/work-orders/{id}/messages", tag = "adjusting",
     params(("id" = OrderId, Path), Page),
     responses((status = 200, body = MessageList), (status = 401, body = Problem),
@@ -89,25 +89,25 @@ async fn list_messages(
     page: Page,
 ) -> Result<Json<MessageList>> {
     let after = page.after_number()?.unwrap_or(0);
-    let whole = store::whole(&app.db, reader.tenant, id).await?;
-    let mine = |firm: FirmId| reader.tenant.firm().is_none_or(|mine| mine == firm);
-    let sent = whole.log.into_iter().filter_map(|entry| {
-        let said = match entry.content {
-            Content::Message(said) => said,
-            Content::CallMoved(moved) => moved.said,
+    let stored = store::find(&app.db, reader.tenant, id).await?;
+    let sees = |firm: FirmId| reader.tenant.firm().is_none_or(|own| own == firm);
+    let sent = stored.log.into_iter().filter_map(|entry| {
+        let exchange = match entry.content {
+            OrderEvent::Message(message) => message.0,
+            OrderEvent::CallMoved(moved) => moved.exchange,
             _ => return None,
         };
-        (entry.seq > after && mine(said.firm.firm_id)).then(|| Sent {
+        (entry.seq > after && sees(exchange.firm.firm_id)).then(|| Message {
             seq: entry.seq,
             at: entry.at,
             by: entry.author.name,
             from_firm: entry.author.firm_id.is_some(),
-            firm_id: said.firm.firm_id,
-            firm_name: said.firm.firm_name,
-            text: said.text.unwrap_or_default(),
+            firm_id: exchange.firm.firm_id,
+            firm_name: exchange.firm.firm_name,
+            text: exchange.text.unwrap_or_default(),
         })
     });
-    let listed = page.cut(sent.collect(), |message: &Sent| message.seq.to_string());
+    let listed = page.cut(sent.collect(), |message: &Message| message.seq.to_string());
     Ok(Json(MessageList {
         items: listed.items,
         next: listed.next,
@@ -116,12 +116,12 @@ async fn list_messages(
 
 /// Send a message about a work order
 ///
-/// To the operator, or to a firm that is asked or has the order.
+/// To the operator, or to a firm that has been offered the order or has it.
 #[utoipa::path(post, path = "/work-orders/{id}/messages", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = NewMessage,
     responses((status = 204), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "There is no such firm to write to", body = Problem),
+              (status = 409, description = "No such firm has an open offer or the order", body = Problem),
               (status = 422, body = Problem)))]
 async fn send_message(
     Shared(app): Shared<App>,
@@ -131,33 +131,37 @@ async fn send_message(
     key: Key,
     Valid(new): Valid<NewMessage>,
 ) -> Result<StatusCode> {
-    let update = order_update(&app, request, writer, id, key, "message", &new)?;
-    must_be_own(writer.tenant, new.firm_id)?;
-    let text = message(&new.text)?;
-    let summary = store::summary(&app.db, writer.tenant, id).await?;
+    let update = prepare_update(&app, request, writer, id, key, "message", &new)?;
+    require_own_firm(writer.tenant, new.firm_id)?;
+    let text = checked_message(&new.text)?;
+    let summary = store::find_summary(&app.db, writer.tenant, id).await?;
     if summary.state.is_over() {
-        return Err(Error::WrongState("the order is over".to_owned()));
+        return Err(Error::WrongState(
+            "the order is closed or cancelled".to_owned(),
+        ));
     }
     if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
-        let offers = change.whole.standing().offers;
-        let said = Between {
+        let offers = change.stored.state().offers;
+        let exchange = Exchange {
             text: Some(text),
-            ..Between::with(partner(&offers, writer.tenant, new.firm_id)?.firm())
+            ..Exchange::with(addressee(&offers, writer.tenant, new.firm_id)?.firm())
         };
-        change.append(Content::Message(said)).await?;
+        change
+            .append(OrderEvent::Message(MessageSent(exchange)))
+            .await?;
         change.commit().await?;
     }
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// The firm that a message is from or to.
-fn partner(offers: &Offers, tenant: Tenant, named: Option<FirmId>) -> Result<&Offer> {
-    let wanted = tenant.firm().or(named);
+/// Firm that a message is from or to.
+fn addressee(offers: &Offers, tenant: Tenant, named: Option<FirmId>) -> Result<&Offer> {
+    let firm = tenant.firm().or(named);
     let seen =
-        |offer: &&Offer| offer.state.is_seen() && wanted.is_none_or(|firm| firm == offer.firm_id);
+        |offer: &&Offer| offer.state.is_seen() && firm.is_none_or(|firm| firm == offer.firm_id);
     let mut found: Vec<&Offer> = offers.all.iter().filter(seen).collect();
-    if wanted.is_none() {
-        // Of several that are asked one may have it already.
+    if firm.is_none() {
+        // One of several firms with an offer may have accepted already.
         let holder = found
             .iter()
             .position(|offer| offer.state == OfferState::Accepted);
@@ -168,11 +172,11 @@ fn partner(offers: &Offers, tenant: Tenant, named: Option<FirmId>) -> Result<&Of
     match found.as_slice() {
         [firm] => Ok(firm),
         [] => Err(Error::WrongState(
-            "there is no such firm that is asked or has the order".to_owned(),
+            "no such firm has an open offer or the order".to_owned(),
         )),
         _ => Err(Error::Invalid {
             field: "firm_id",
-            detail: "is missing: more than one firm is asked".to_owned(),
+            detail: "is required: more than one firm has an open offer".to_owned(),
         }),
     }
 }

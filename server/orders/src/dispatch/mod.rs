@@ -1,4 +1,4 @@
-//! Dispatch of a work order to firms: offers, their answers and deadlines, other times, and
+//! Dispatch of a work order to firms: offers with answers and deadlines, rescheduling, and
 //! changes of the port call.
 
 pub(crate) mod call_links;
@@ -13,7 +13,6 @@ pub(crate) mod port_call_check;
 pub(crate) mod reschedule;
 
 pub use call_links::link_once;
-pub use new_port_calls::calls_come;
+pub use new_port_calls::attach_new_calls;
 pub use offer_expiry::{lapse, watch};
-pub use offer_requests::NewOffer;
-pub use port_call_changes::{Alongside, CallFit, Moving, calls_move};
+pub use port_call_changes::{CallUpdate, announce_call_updates};

@@ -1,12 +1,12 @@
-//! A port call that is entered where an order waits for one: its own was withdrawn, or none
-//! was known.
+//! New port calls for orders without one, whose own was withdrawn or never known.
 //!
-//! What always holds: an order comes to a call of its own port only, and only where its time
-//! lies in it; who was told that its call is gone is told that there is one again.
+//! What always holds: an order is linked to a call of its own port only, and only if its time
+//! lies in it. Parties that were notified of the lost call are notified of the new one.
 
-use crate::dispatch::call_links;
-use crate::dispatch::port_call_changes::{self, Alongside, CallChange, CallFit, Moving};
-use crate::firms::port_meant;
+use crate::dispatch::port_call_changes::CallUpdate;
+use crate::dispatch::{call_links, port_call_changes};
+use crate::firms::named_port;
+use crate::work_orders::payload::port_call::{Alongside, CallChange, CallFit};
 use crate::work_orders::store;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
@@ -14,27 +14,27 @@ use binnacle_platform::events::Event;
 use binnacle_platform::ids::{CallId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 
-/// Brings orders without a call to new calls of a vessel, whose row is held; the live events,
-/// to be published after the commit.
+/// Links orders without a call to new calls of a vessel, whose row is locked. Returns the live
+/// events, to be published after the commit.
 ///
 /// # Errors
 /// When the database cannot be written.
-pub async fn calls_come(
+pub async fn attach_new_calls(
     tx: &mut Tx,
     vessel: VesselId,
     new: &[(CallId, Alongside)],
     by: &str,
     now: Time,
 ) -> Result<Vec<Event>> {
-    let mut told = Vec::new();
+    let mut events = Vec::new();
     if new.is_empty() {
-        return Ok(told);
+        return Ok(events);
     }
     for order in port_call_changes::under_way(tx, vessel).await? {
-        if !order.is_adrift {
+        if !order.is_unlinked {
             continue;
         }
-        let Some((port, gone)) = waits(tx, vessel, order.id).await? else {
+        let Some((port, lost)) = port_and_lost_call(tx, vessel, order.id).await? else {
             continue;
         };
         let lies_in = |call: &Alongside| {
@@ -45,29 +45,30 @@ pub async fn calls_come(
             continue;
         };
         call_links::link(tx, vessel, order.id, *id).await?;
-        if let Some(gone) = gone {
-            let moving = Moving {
-                call_id: gone.call_id,
+        if let Some(lost) = lost {
+            let update = CallUpdate {
+                call_id: lost.call_id,
                 then_id: *id,
-                was: gone.is.unwrap_or(gone.was),
+                was: lost.is.unwrap_or(lost.was),
                 is: Some(is.clone()),
             };
-            told.extend(port_call_changes::tell(tx, vessel, order.id, &moving, by, now).await?);
+            events.extend(
+                port_call_changes::announce_update(tx, vessel, order.id, &update, by, now).await?,
+            );
         }
     }
-    Ok(told)
+    Ok(events)
 }
 
-/// The port that an order is for, where its words mean one, and what became of the call that
-/// it had.
-async fn waits(
+/// Port of an order, if its words name one, and the change of its earlier call.
+async fn port_and_lost_call(
     tx: &mut Tx,
     vessel: VesselId,
     order: OrderId,
 ) -> Result<Option<(String, Option<CallChange>)>> {
-    let whole = store::lock(tx, vessel, order).await?;
-    let standing = whole.standing();
-    let meant = || port_meant(&whole.summary.port).map(|port| port.code.to_string());
-    let port = standing.port.or_else(meant);
-    Ok(port.map(|port| (port, standing.call)))
+    let stored = store::lock(tx, vessel, order).await?;
+    let state = stored.state();
+    let named = || named_port(&stored.summary.port).map(|port| port.code.to_string());
+    let port = state.port.or_else(named);
+    Ok(port.map(|port| (port, state.call_change)))
 }

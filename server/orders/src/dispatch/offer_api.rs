@@ -1,13 +1,13 @@
-//! Offering an order to firms, and what these answer.
+//! Handlers of offers to firms, and of their answers.
 
 use crate::dispatch::offer_requests::{
-    self, Answer, Boarded, FirmSays, NewOffer, Proposal, firm_says, operator_says,
+    self, Decision, FirmAnswer, OfferAnswer, Proposal, answer_as_firm, answer_as_operator,
 };
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::order::{Order, State};
-use crate::work_orders::order_update;
-use crate::work_orders::shown;
-use crate::work_orders::store;
+use crate::work_orders::events::{Boarding, OrderEvent};
+use crate::work_orders::new_order::NewOffer;
+use crate::work_orders::order::Order;
+use crate::work_orders::state::State;
+use crate::work_orders::{load_order, prepare_update, store};
 use axum::extract::{FromRef, State as Shared};
 use axum::http::StatusCode;
 use binnacle_platform::access::{PartyWriter, Writer};
@@ -36,12 +36,13 @@ where
 
 /// Offer a work order to firms
 ///
-/// One after the other, or to all at once. Where nobody answers in time the next is asked.
+/// One after the other, or to all at once. An offer without an answer lapses, and the next firm
+/// follows.
 #[utoipa::path(post, path = "/work-orders/{id}/offer", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = NewOffer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "It is offered already, or has begun", body = Problem),
+              (status = 409, description = "An offer is open, or the work has begun", body = Problem),
               (status = 422, body = Problem)))]
 async fn offer_work_order(
     Shared(app): Shared<App>,
@@ -52,42 +53,42 @@ async fn offer_work_order(
     Valid(new): Valid<NewOffer>,
 ) -> Result<Json<Order>> {
     let operator = writer.operator;
-    let update = order_update(&app, request, writer, id, key, "offer", &new)?;
-    let (whole, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "offer", &new)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, operator, id).await;
+        return load_order(&app, operator, id).await;
     }
     let allowed = [State::Planned, State::Declined];
-    whole.must_be(
+    stored.require_state(
         &allowed,
-        "it is offered before a firm has it, and not twice at a time",
+        "it can be offered before a firm has it, and not while an offer is open",
     )?;
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         let offered = new.checked(&mut change.tx, operator).await?;
         offer_requests::offer(&mut change, offered).await?;
         change.commit().await?;
     }
-    shown(&app, operator, id).await
+    load_order(&app, operator, id).await
 }
 
-/// The vessel of an order that is to be answered: a firm that was asked once is told why
-/// it cannot answer any more.
+/// Vessel of an order to answer. A firm whose offer has ended finds it too: the error then names
+/// the reason.
 async fn vessel_of(app: &App, tenant: Tenant, id: OrderId) -> Result<VesselId> {
     match tenant {
-        Tenant::Firm(firm) => store::vessel_of_asked(&app.db, firm, id).await,
-        Tenant::Operator(_) => Ok(store::summary(&app.db, tenant, id).await?.vessel_id),
+        Tenant::Firm(firm) => store::find_vessel_for_firm(&app.db, firm, id).await,
+        Tenant::Operator(_) => Ok(store::find_summary(&app.db, tenant, id).await?.vessel_id),
     }
 }
 
 /// Accept an offer, or a proposal
 ///
-/// A firm takes the order as it is offered; an operator agrees to what a firm has
-/// proposed. Of those who accept at once one has it.
+/// A firm accepts the order as it was offered; an operator accepts a firm's proposal. Of several
+/// firms that accept at once, one gets the order.
 #[utoipa::path(post, path = "/work-orders/{id}/accept", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Answer,
+    params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "There is nothing to accept, or not any more", body = Problem),
+              (status = 409, description = "There is nothing to accept, or no longer", body = Problem),
               (status = 422, body = Problem)))]
 async fn accept_work_order(
     Shared(app): Shared<App>,
@@ -95,30 +96,34 @@ async fn accept_work_order(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    ValidOrNone(answer): ValidOrNone<Answer>,
+    ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "yes", &answer)?;
+    let update = prepare_update(&app, request, writer, id, key, "yes", &answer)?;
     let answer = answer.checked(writer.tenant)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     if let Some(mut change) = update.begin_on(vessel).await? {
         match writer.tenant {
-            Tenant::Firm(firm) => firm_says(&mut change, firm, FirmSays::Yes(answer)).await?,
-            Tenant::Operator(_) => operator_says(&mut change, answer, true).await?,
+            Tenant::Firm(firm) => {
+                answer_as_firm(&mut change, firm, FirmAnswer::Accept(answer)).await?;
+            }
+            Tenant::Operator(_) => {
+                answer_as_operator(&mut change, answer, Decision::Accept).await?;
+            }
         }
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 /// Decline an offer, or a proposal
 ///
-/// A firm will not have the order, or gives it back before it is on board; an operator
-/// does not agree to what a firm has proposed. The next firm is asked.
+/// A firm declines the order, or gives it back before the adjuster is on board; an operator
+/// declines a firm's proposal. The next firm receives an offer.
 #[utoipa::path(post, path = "/work-orders/{id}/decline", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Answer,
+    params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 204), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "There is nothing to decline, or not any more", body = Problem),
+              (status = 409, description = "There is nothing to decline, or no longer", body = Problem),
               (status = 422, body = Problem)))]
 async fn decline_work_order(
     Shared(app): Shared<App>,
@@ -126,31 +131,35 @@ async fn decline_work_order(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    ValidOrNone(answer): ValidOrNone<Answer>,
+    ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<StatusCode> {
-    let update = order_update(&app, request, writer, id, key, "no", &answer)?;
+    let update = prepare_update(&app, request, writer, id, key, "no", &answer)?;
     let answer = answer.checked(writer.tenant)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     if let Some(mut change) = update.begin_on(vessel).await? {
         match writer.tenant {
-            Tenant::Firm(firm) => firm_says(&mut change, firm, FirmSays::No(answer)).await?,
-            Tenant::Operator(_) => operator_says(&mut change, answer, false).await?,
+            Tenant::Firm(firm) => {
+                answer_as_firm(&mut change, firm, FirmAnswer::Decline(answer)).await?;
+            }
+            Tenant::Operator(_) => {
+                answer_as_operator(&mut change, answer, Decision::Decline).await?;
+            }
         }
         change.commit().await?;
     }
-    // The order is no business of a firm's any more.
+    // The firm no longer sees the order.
     Ok(StatusCode::NO_CONTENT)
 }
 
 /// Propose other terms
 ///
-/// For a firm that is asked: another fee, time or berth, one of them or all. What it leaves
-/// out is as it was offered. The operator accepts or declines, with a deadline of its own.
+/// For a firm with an open offer: another fee, time or berth, or several of them. Omitted terms
+/// stay as offered. The operator accepts or declines by a deadline of its own.
 #[utoipa::path(post, path = "/work-orders/{id}/propose", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = Proposal,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "It is not offered to your firm, or not any more", body = Problem),
+              (status = 409, description = "Your firm has no open offer", body = Problem),
               (status = 422, body = Problem)))]
 async fn propose_terms(
     Shared(app): Shared<App>,
@@ -162,25 +171,25 @@ async fn propose_terms(
 ) -> Result<Json<Order>> {
     let Tenant::Firm(firm) = writer.tenant else {
         return Err(Error::Forbidden(
-            "terms are proposed by a firm that is asked",
+            "only a firm with an open offer proposes terms",
         ));
     };
-    let update = order_update(&app, request, writer, id, key, "proposal", &proposal)?;
+    let update = prepare_update(&app, request, writer, id, key, "proposal", &proposal)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     let now = app.clock.now().into();
     if let Some(mut change) = update.begin_on(vessel).await? {
-        let proposal = proposal.checked(change.whole.summary.planned_at, now)?;
-        firm_says(&mut change, firm, FirmSays::Instead(proposal)).await?;
+        let proposal = proposal.checked(change.stored.summary.planned_at, now)?;
+        answer_as_firm(&mut change, firm, FirmAnswer::Propose(proposal)).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
-/// Say that the adjuster is on board
+/// Report the adjuster on board
 ///
-/// The next thing is to read the berth.
+/// The berth reading follows.
 #[utoipa::path(post, path = "/work-orders/{id}/on-board", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Boarded,
+    params(("id" = OrderId, Path), Key), request_body = Boarding,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "No firm has accepted it yet, or the work has begun", body = Problem),
@@ -191,19 +200,19 @@ async fn go_on_board(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    ValidOrNone(boarded): ValidOrNone<Boarded>,
+    ValidOrNone(boarded): ValidOrNone<Boarding>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "on board", &boarded)?;
-    let (whole, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "on board", &boarded)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
     let allowed = [State::Planned, State::Accepted];
-    whole.must_be(&allowed, "the adjuster goes on board once a firm has it")?;
+    stored.require_state(&allowed, "the adjuster goes on board once a firm has it")?;
     let boarded = boarded.checked(app.clock.now().into())?;
-    if let Some(mut change) = update.begin(&whole).await? {
-        change.append(Content::OnBoard(boarded)).await?;
+    if let Some(mut change) = update.begin(&stored).await? {
+        change.append(OrderEvent::OnBoard(boarded)).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }

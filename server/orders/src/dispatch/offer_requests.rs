@@ -1,13 +1,20 @@
-//! What is asked and answered between an operator and firms, as requests have it.
+//! Requests and answers between an operator and firms.
 
-use crate::dispatch::offer_sequence::{answer_by, ask, ask_next, must_be_ahead, share_ends};
+use crate::dispatch::call_links::link_call_at;
+use crate::dispatch::offer_sequence::{
+    answer_by, require_future_job, send_next_offers, send_offers, share_deadline,
+};
 use crate::dispatch::port_call_check;
-use crate::dispatch::reschedule::at_its_call;
-use crate::firms::{self, Told, Visit};
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::offer_state::{Asked, Between, OfferState, Offered, OfferedTo, Terms};
-use crate::work_orders::order::{State, must_be_near};
+use crate::firms::{self, Requester, Visit};
+use crate::work_orders::events::{
+    Accepted, Boarding, Declined, OfferRound, OfferedFirm, OrderEvent, ProposalAccepted,
+    ProposalDeclined, Proposed,
+};
+use crate::work_orders::new_order::{NewOffer, require_near_date};
+use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_update::Change;
+use crate::work_orders::payload::exchange::{Exchange, NamedFirm, Terms};
+use crate::work_orders::state::State;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::http::{is_control, optional_text, text};
@@ -15,71 +22,40 @@ use binnacle_platform::ids::{FirmId, OperatorId};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
-/// So many firms at most.
-const MOST_FIRMS: usize = 20;
-pub(crate) const LONGEST_H: u32 = 720;
-const MOST_EUR: f64 = 1e6;
+/// Most firms of an offer.
+const MAX_FIRMS: usize = 20;
+pub(crate) const MAX_ANSWER_HOURS: u32 = 720;
+const MAX_FEE_EUR: f64 = 1e6;
 /// Longest text of a message, in characters.
 pub(crate) const MAX_MESSAGE: usize = 2000;
 
-/// An order to be offered to firms.
-#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-#[schema(as = NewOffer, example = json!({
-    "firms": ["0199aa00-0000-7000-8000-000000000003"], "answer_within_hours": 48
-}))]
-pub struct NewOffer {
-    /// The firms, in the order in which they are asked: 1 to 20 that you work with.
-    pub firms: Vec<FirmId>,
-    /// So long each has for an answer, 1 to 720 hours; then the next is asked.
-    #[serde(default = "two_days")]
-    #[schema(minimum = 1, maximum = 720)]
-    pub answer_within_hours: u32,
-    /// Ask all of them at once: the first to accept has it.
-    #[serde(default)]
-    pub at_once: bool,
-    /// What is said to them.
-    #[serde(default)]
-    #[schema(max_length = 200)]
-    pub text: Option<String>,
-    /// The fees that a plan has for some of them; for others, what their terms say for a
-    /// compass alone.
-    #[serde(skip)]
-    pub fees_eur: BTreeMap<FirmId, f64>,
-}
-
-pub(crate) fn two_days() -> u32 {
-    48
-}
-
-/// A yes or a no.
+/// Acceptance or refusal.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OfferAnswer, example = json!({
     "adjuster_name": "M. Etxeberria", "adjuster_licence": "ES-CA-114", "text": "See you there."
 }))]
-pub(crate) struct Answer {
-    /// Whose proposal an operator answers; may be left out where there is one.
+pub(crate) struct OfferAnswer {
+    /// Firm whose proposal the operator answers; optional if there is one only.
     #[serde(default)]
     pub firm_id: Option<FirmId>,
-    /// Who will come, where a firm accepts.
+    /// Name of the adjuster, where a firm accepts.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub adjuster_name: Option<String>,
-    /// The number of their licence.
+    /// Licence number.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub adjuster_licence: Option<String>,
-    /// In words.
+    /// Text.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub text: Option<String>,
 }
 
-/// Other terms than were offered.
+/// Proposal of other terms than offered.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OfferProposal, example = json!({
@@ -87,76 +63,65 @@ pub(crate) struct Answer {
     "text": "Our team is at Santander until noon."
 }))]
 pub(crate) struct Proposal {
-    /// The terms: what is left out is as it was offered.
-    pub terms: NewTerms,
-    /// In words.
+    /// Terms: omitted ones stay as offered.
+    pub terms: ProposedTerms,
+    /// Text.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub text: Option<String>,
 }
 
-/// What a firm would have otherwise: at least one of these.
+/// Terms that a firm proposes: at least one of these.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = ProposedTerms, example = json!({ "fee_eur": 900.0 }))]
-pub(crate) struct NewTerms {
-    /// When it is to be done, if at another time.
+pub(crate) struct ProposedTerms {
+    /// Time of the job, if another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub planned_at: Option<Time>,
-    /// The berth, if another.
+    /// Berth, if another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 200)]
     pub berth: Option<String>,
-    /// The fee, euros, if another.
+    /// Fee, euros, if another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(minimum = 0, maximum = 1_000_000)]
     pub fee_eur: Option<f64>,
 }
 
-/// When the adjuster went on board.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-#[schema(as = OnBoard, example = json!({ "text": "Gangway on the starboard side." }))]
-pub struct Boarded {
-    /// When; now where it is not said.
-    #[serde(default)]
-    pub at: Option<Time>,
-    /// In words.
-    #[serde(default)]
-    #[schema(max_length = 200)]
-    pub text: Option<String>,
-}
-
 impl NewOffer {
-    /// The offer, if the operator works with all of the firms.
-    pub(crate) async fn checked(self, tx: &mut Tx, operator: OperatorId) -> Result<Offered> {
+    /// Validates the offer: the operator works with all of the firms.
+    pub(crate) async fn checked(self, tx: &mut Tx, operator: OperatorId) -> Result<OfferRound> {
         let invalid = |field, detail: String| Err(Error::Invalid { field, detail });
-        if self.firms.is_empty() || self.firms.len() > MOST_FIRMS {
-            return invalid("firms", format!("is not 1 to {MOST_FIRMS} firms"));
+        if self.firms.is_empty() || self.firms.len() > MAX_FIRMS {
+            return invalid("firms", format!("is not 1 to {MAX_FIRMS} firms"));
         }
-        if !(1..=LONGEST_H).contains(&self.answer_within_hours) {
+        if !(1..=MAX_ANSWER_HOURS).contains(&self.answer_within_hours) {
             let hours = self.answer_within_hours;
-            let detail = format!("{hours} is outside 1 to {LONGEST_H}");
+            let detail = format!("{hours} is outside 1 to {MAX_ANSWER_HOURS}");
             return invalid("answer_within_hours", detail);
         }
-        let mut firms: Vec<OfferedTo> = Vec::new();
+        let mut firms: Vec<OfferedFirm> = Vec::new();
         for firm_id in self.firms {
             if firms.iter().any(|one| one.firm.firm_id == firm_id) {
-                return invalid("firms", format!("{firm_id} stands there twice"));
+                return invalid("firms", format!("{firm_id} is listed twice"));
             }
-            let Some(firm_name) = firms::name_for(tx, operator, firm_id).await? else {
-                return invalid("firms", format!("{firm_id} is no firm that you work with"));
+            let Some(firm_name) = firms::find_name(tx, operator, firm_id).await? else {
+                return invalid(
+                    "firms",
+                    format!("{firm_id} is not a firm that works for you"),
+                );
             };
             let fee_eur = if let Some(fee) = self.fees_eur.get(&firm_id) {
                 Some(*fee)
             } else {
-                let terms = firms::terms_for(tx, operator, firm_id).await?;
+                let terms = firms::find_terms(tx, operator, firm_id).await?;
                 terms.map(|terms| f64::from(terms.fee_eur))
             };
-            let firm = Asked { firm_id, firm_name };
-            firms.push(OfferedTo { firm, fee_eur });
+            let firm = NamedFirm { firm_id, firm_name };
+            firms.push(OfferedFirm { firm, fee_eur });
         }
-        Ok(Offered {
+        Ok(OfferRound {
             firms,
             answer_within_hours: self.answer_within_hours,
             at_once: self.at_once,
@@ -165,8 +130,8 @@ impl NewOffer {
     }
 }
 
-/// Refuses a firm that speaks for another.
-pub(crate) fn must_be_own(tenant: Tenant, named: Option<FirmId>) -> Result<()> {
+/// Refuses a firm that answers for another.
+pub(crate) fn require_own_firm(tenant: Tenant, named: Option<FirmId>) -> Result<()> {
     match (tenant.firm(), named) {
         (Some(own), Some(firm)) if own != firm => Err(Error::Invalid {
             field: "firm_id",
@@ -176,15 +141,15 @@ pub(crate) fn must_be_own(tenant: Tenant, named: Option<FirmId>) -> Result<()> {
     }
 }
 
-impl Answer {
-    /// The same, its words trimmed.
+impl OfferAnswer {
+    /// Validates the answer.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a firm answers for another.
-    pub(crate) fn checked(self, tenant: Tenant) -> Result<Answer> {
-        must_be_own(tenant, self.firm_id)?;
+    /// [`Error::Invalid`] when a firm answers for another.
+    pub(crate) fn checked(self, tenant: Tenant) -> Result<OfferAnswer> {
+        require_own_firm(tenant, self.firm_id)?;
         let optional = |field, value: Option<String>| optional_text(field, value.as_deref());
-        Ok(Answer {
+        Ok(OfferAnswer {
             firm_id: self.firm_id,
             adjuster_name: optional("adjuster_name", self.adjuster_name)?,
             adjuster_licence: optional("adjuster_licence", self.adjuster_licence)?,
@@ -192,18 +157,18 @@ impl Answer {
         })
     }
 
-    /// What it says of a firm.
-    pub(crate) fn between(self, firm: Asked) -> Between {
-        Between {
+    /// Exchange with a firm that contains the answer.
+    pub(crate) fn into_exchange(self, firm: NamedFirm) -> Exchange {
+        Exchange {
             adjuster_name: self.adjuster_name,
             adjuster_licence: self.adjuster_licence,
             text: self.text,
-            ..Between::with(firm)
+            ..Exchange::with(firm)
         }
     }
 }
 
-/// Terms at a time to come.
+/// Validates terms with a time in the future.
 pub(crate) fn checked_terms(terms: Terms, now: Time) -> Result<Terms> {
     if terms.planned_at <= now {
         return Err(Error::Invalid {
@@ -211,18 +176,18 @@ pub(crate) fn checked_terms(terms: Terms, now: Time) -> Result<Terms> {
             detail: format!("{} is over", terms.planned_at.0),
         });
     }
-    must_be_near(terms.planned_at, now)?;
+    require_near_date(terms.planned_at, now)?;
     checked_words(terms)
 }
 
-/// Terms, their berth trimmed, for a fee that can be, in whole cents.
+/// Validates berth and fee; rounds the fee to cents.
 fn checked_words(mut terms: Terms) -> Result<Terms> {
     if let Some(fee) = terms.fee_eur
-        && !(0.0..=MOST_EUR).contains(&fee)
+        && !(0.0..=MAX_FEE_EUR).contains(&fee)
     {
         return Err(Error::Invalid {
             field: "fee_eur",
-            detail: format!("{fee} is outside 0 to {MOST_EUR}"),
+            detail: format!("{fee} is outside 0 to {MAX_FEE_EUR}"),
         });
     }
     terms.fee_eur = terms.fee_eur.map(|fee| (fee * 100.0).round() / 100.0);
@@ -231,18 +196,18 @@ fn checked_words(mut terms: Terms) -> Result<Terms> {
 }
 
 impl Proposal {
-    /// What a firm proposes for an order that is planned for some time, and its words.
+    /// Validates a firm's proposal for an order that is planned for this time.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where it proposes nothing, or what cannot be.
-    pub(crate) fn checked(self, planned_at: Time, now: Time) -> Result<Proposed> {
+    /// [`Error::Invalid`] when it proposes nothing, or invalid terms.
+    pub(crate) fn checked(self, planned_at: Time, now: Time) -> Result<CheckedProposal> {
         let new = self.terms;
         let terms = Terms {
             planned_at: new.planned_at.unwrap_or(planned_at),
             berth: new.berth,
             fee_eur: new.fee_eur,
         };
-        // A time that stands is not judged again: the firm may still say yes to it.
+        // An unchanged time is not checked again: the firm may still accept it.
         let terms = match new.planned_at {
             Some(_) => checked_terms(terms, now)?,
             None => checked_words(terms)?,
@@ -250,25 +215,25 @@ impl Proposal {
         if new.planned_at.is_none() && terms.berth.is_none() && terms.fee_eur.is_none() {
             return Err(Error::Invalid {
                 field: "terms",
-                detail: "say nothing else: give planned_at, berth or fee_eur".to_owned(),
+                detail: "propose nothing: give planned_at, berth or fee_eur".to_owned(),
             });
         }
-        Ok(Proposed {
+        Ok(CheckedProposal {
             terms,
             text: optional_text("text", self.text.as_deref())?,
         })
     }
 }
 
-/// What a firm proposes, whole.
-pub(crate) struct Proposed {
+/// Proposal of a firm, with all terms.
+pub(crate) struct CheckedProposal {
     terms: Terms,
     text: Option<String>,
 }
 
-impl Boarded {
-    /// The same at a moment that can be.
-    pub(crate) fn checked(self, now: Time) -> Result<Boarded> {
+impl Boarding {
+    /// Validates the time of boarding.
+    pub(crate) fn checked(self, now: Time) -> Result<Boarding> {
         let at = self.at.unwrap_or(now);
         if at > now {
             return Err(Error::Invalid {
@@ -276,147 +241,169 @@ impl Boarded {
                 detail: "lies in the future".to_owned(),
             });
         }
-        Ok(Boarded {
+        Ok(Boarding {
             at: Some(at),
             text: optional_text("text", self.text.as_deref())?,
         })
     }
 }
 
-/// What is said in a message: lines of text.
-pub(crate) fn message(said: &str) -> Result<String> {
-    let said = said.trim();
-    if said.chars().any(|c| is_control(c) && c != '\n') || said.chars().count() > MAX_MESSAGE {
+/// Validates the text of a message, which may have several lines.
+pub(crate) fn checked_message(message: &str) -> Result<String> {
+    let message = message.trim();
+    if message.chars().any(|c| is_control(c) && c != '\n') || message.chars().count() > MAX_MESSAGE
+    {
         return Err(Error::Invalid {
             field: "text",
             detail: format!("has control characters, or more than {MAX_MESSAGE} characters"),
         });
     }
-    // What is blank is refused as any text is.
-    if said.is_empty() {
-        return text("text", said);
+    // Blank text is refused as elsewhere.
+    if message.is_empty() {
+        return text("text", message);
     }
-    Ok(said.to_owned())
+    Ok(message.to_owned())
 }
 
-/// Offers an order, and asks whom it is the turn of.
+/// Offers an order, and sends the first offers.
 ///
 /// # Errors
-/// [`Error::WrongState`] when its time is over, or one of the firms has no team left that day
-/// or does not work then.
-pub(crate) async fn offer(change: &mut Change<'_>, offered: Offered) -> Result<()> {
-    let at = change.whole.summary.planned_at;
-    must_be_ahead(change, at)?;
-    // Everybody locks them in one order.
-    let mut firms: Vec<&Asked> = offered.firms.iter().map(|one| &one.firm).collect();
+/// [`Error::WrongState`] when its time is past, or a firm has no team left or does not work on
+/// that day.
+pub(crate) async fn offer(change: &mut Change<'_>, offered: OfferRound) -> Result<()> {
+    let at = change.stored.summary.planned_at;
+    require_future_job(change, at)?;
+    // All transactions lock firms in the same order.
+    let mut firms: Vec<&NamedFirm> = offered.firms.iter().map(|one| &one.firm).collect();
     firms.sort_by_key(|firm| firm.firm_id.0);
     for firm in firms {
-        must_have_room(change, firm, at, Told::Operator).await?;
+        require_capacity(change, firm, at, Requester::Operator).await?;
     }
-    change.append(Content::Offered(offered)).await?;
-    // Whom the operator names first is asked at however short notice.
-    ask(change).await
+    change.append(OrderEvent::OfferRound(offered)).await?;
+    // The first firm named receives the offer however short the notice.
+    send_offers(change).await
 }
 
 /// Refuses a time at which a firm has no team left.
-pub(crate) async fn must_have_room(
+pub(crate) async fn require_capacity(
     change: &mut Change<'_>,
-    firm: &Asked,
+    firm: &NamedFirm,
     at: Time,
-    told: Told,
+    requester: Requester,
 ) -> Result<()> {
-    let summary = &change.whole.summary;
+    let summary = &change.stored.summary;
     let visit = Visit {
         operator: summary.operator_id,
         vessel: summary.vessel_id,
         port: &summary.port,
         at,
     };
-    let name = (firm.firm_id, firm.firm_name.as_str());
-    firms::must_have_room(&mut change.tx, name, &visit, told).await
+    firms::require_capacity(
+        &mut change.tx,
+        firm.firm_id,
+        &firm.firm_name,
+        &visit,
+        requester,
+    )
+    .await
 }
 
-/// A firm's yes or no, or its other terms.
-pub(crate) enum FirmSays {
-    Yes(Answer),
-    No(Answer),
-    Instead(Proposed),
+/// Answer of a firm to an offer.
+pub(crate) enum FirmAnswer {
+    Accept(OfferAnswer),
+    Decline(OfferAnswer),
+    Propose(CheckedProposal),
 }
 
-/// Takes a firm's answer.
+/// Applies a firm's answer.
 ///
 /// # Errors
-/// [`Error::WrongState`] when it is not asked, or not any more.
-pub(crate) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmSays) -> Result<()> {
-    let offers = change.whole.standing().offers;
-    let offer = offers.of(firm).ok_or(Error::NotFound("work order"))?;
+/// [`Error::WrongState`] when the firm has no open offer.
+pub(crate) async fn answer_as_firm(
+    change: &mut Change<'_>,
+    firm: FirmId,
+    answer: FirmAnswer,
+) -> Result<()> {
+    let offers = change.stored.state().offers;
+    let offer = offers.to_firm(firm).ok_or(Error::NotFound("work order"))?;
     let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
-    let gives_back = matches!(says, FirmSays::No(_))
+    let gives_back = matches!(answer, FirmAnswer::Decline(_))
         && offer.state == OfferState::Accepted
-        && change.whole.summary.state == State::Accepted;
-    // A firm may think better of its own proposal.
-    let takes_back = matches!(says, FirmSays::No(_) | FirmSays::Instead(_))
+        && change.stored.summary.state == State::Accepted;
+    // A firm may withdraw its own proposal.
+    let takes_back = matches!(answer, FirmAnswer::Decline(_) | FirmAnswer::Propose(_))
         && offer.state == OfferState::Proposed;
-    if change.whole.summary.state == State::Cancelled {
+    if change.stored.summary.state == State::Cancelled {
         return wrong("the order is cancelled");
     }
     if offer.state != OfferState::Open && !gives_back && !takes_back {
-        return wrong(offer.state.why_not());
+        return wrong(offer.state.reason_closed());
     }
     if !gives_back && offer.answer_by.is_some_and(|by| by < change.now) {
-        return wrong(OfferState::Lapsed.why_not());
+        return wrong(OfferState::Lapsed.reason_closed());
     }
-    let asked = offer.firm();
-    match says {
-        FirmSays::Yes(answer) => {
-            let at = change.whole.summary.planned_at;
-            must_be_ahead(change, at)?;
-            must_have_room(change, &asked, at, Told::Firm).await?;
-            let taken = Between {
+    let named_firm = offer.firm();
+    match answer {
+        FirmAnswer::Accept(answer) => {
+            let at = change.stored.summary.planned_at;
+            require_future_job(change, at)?;
+            require_capacity(change, &named_firm, at, Requester::Firm).await?;
+            let taken = Exchange {
                 fee_eur: offer.fee_eur,
-                ..answer.between(asked)
+                ..answer.into_exchange(named_firm)
             };
-            change.append(Content::Accepted(taken)).await
+            change.append(OrderEvent::Accepted(Accepted(taken))).await
         }
-        FirmSays::No(answer) => {
+        FirmAnswer::Decline(answer) => {
             change
-                .append(Content::Declined(answer.between(asked)))
+                .append(OrderEvent::Declined(Declined(
+                    answer.into_exchange(named_firm),
+                )))
                 .await?;
-            ask_next(change).await
+            send_next_offers(change).await
         }
-        FirmSays::Instead(proposal) => {
+        FirmAnswer::Propose(proposal) => {
             let at = proposal.terms.planned_at;
-            must_have_room(change, &asked, at, Told::Firm).await?;
-            if at != change.whole.summary.planned_at {
-                port_call_check::must_be_there(change, at, "planned_at").await?;
+            require_capacity(change, &named_firm, at, Requester::Firm).await?;
+            if at != change.stored.summary.planned_at {
+                port_call_check::require_vessel_in_port(change, at, "planned_at").await?;
             }
             let until = answer_by(change, offers.answer_within_hours, at);
-            let share = share_ends(change, &offers, 0).await?;
+            let share = share_deadline(change, &offers, 0).await?;
             let until = share.map_or(until, |share| share.min(until));
-            let proposed = Between {
+            let proposed = Exchange {
                 answer_by: Some(until),
                 terms: Some(proposal.terms),
                 text: proposal.text,
-                ..Between::with(asked)
+                ..Exchange::with(named_firm)
             };
-            change.append(Content::Proposed(proposed)).await
+            change
+                .append(OrderEvent::Proposed(Proposed(proposed)))
+                .await
         }
     }
 }
 
-/// Takes an operator's yes or no to what a firm has proposed.
+/// Decision of an operator on a proposal.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Decision {
+    Accept,
+    Decline,
+}
+
+/// Applies an operator's answer to a proposal.
 ///
 /// # Errors
-/// [`Error::WrongState`] when nothing is proposed, or it has lapsed.
-pub(crate) async fn operator_says(
+/// [`Error::WrongState`] when there is no proposal, or it has lapsed.
+pub(crate) async fn answer_as_operator(
     change: &mut Change<'_>,
-    answer: Answer,
-    yes: bool,
+    answer: OfferAnswer,
+    decision: Decision,
 ) -> Result<()> {
-    let offers = change.whole.standing().offers;
+    let offers = change.stored.state().offers;
     let mut proposed = offers.all.iter().filter(|offer| {
-        let meant = answer.firm_id.is_none_or(|firm| firm == offer.firm_id);
-        meant && offer.state == OfferState::Proposed
+        let is_addressed = answer.firm_id.is_none_or(|firm| firm == offer.firm_id);
+        is_addressed && offer.state == OfferState::Proposed
     });
     let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
     let Some(offer) = proposed.next() else {
@@ -425,32 +412,36 @@ pub(crate) async fn operator_says(
     if proposed.next().is_some() {
         return Err(Error::Invalid {
             field: "firm_id",
-            detail: "is missing: more than one firm has proposed terms".to_owned(),
+            detail: "is required: more than one firm has proposed terms".to_owned(),
         });
     }
     if offer.answer_by.is_some_and(|by| by < change.now) {
         return wrong("the proposal has lapsed");
     }
-    let mut between = Between {
+    let mut exchange = Exchange {
         terms: offer.terms.clone(),
         text: answer.text,
-        ..Between::with(offer.firm())
+        ..Exchange::with(offer.firm())
     };
-    if yes {
-        let (firm, fee_eur) = (between.firm.clone(), offer.fee());
-        if let Some(terms) = &mut between.terms {
-            // What a firm says nothing of is as it was offered.
+    if decision == Decision::Accept {
+        let (firm, fee_eur) = (exchange.firm.clone(), offer.fee());
+        if let Some(terms) = &mut exchange.terms {
+            // Terms that the firm omits stay as offered.
             terms.fee_eur = fee_eur;
             let at = terms.planned_at;
-            must_be_ahead(change, at)?;
-            must_have_room(change, &firm, at, Told::Operator).await?;
-            if at != change.whole.summary.planned_at {
-                port_call_check::must_be_there(change, at, "planned_at").await?;
-                at_its_call(change, at).await?;
+            require_future_job(change, at)?;
+            require_capacity(change, &firm, at, Requester::Operator).await?;
+            if at != change.stored.summary.planned_at {
+                port_call_check::require_vessel_in_port(change, at, "planned_at").await?;
+                link_call_at(change, at).await?;
             }
         }
-        return change.append(Content::ProposalAccepted(between)).await;
+        return change
+            .append(OrderEvent::ProposalAccepted(ProposalAccepted(exchange)))
+            .await;
     }
-    change.append(Content::ProposalDeclined(between)).await?;
-    ask_next(change).await
+    change
+        .append(OrderEvent::ProposalDeclined(ProposalDeclined(exchange)))
+        .await?;
+    send_next_offers(change).await
 }

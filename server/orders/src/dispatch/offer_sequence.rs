@@ -1,63 +1,66 @@
-//! Whose turn it is to be asked for an order, and until when they may answer.
+//! Sequence of offers to firms, and their deadlines.
 
 use crate::firms;
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::offer_state::{Between, Offer, OfferState, Offers};
-use crate::work_orders::order::State;
+use crate::work_orders::events::{Lapsed, OfferSent, OrderEvent};
+use crate::work_orders::offers::{Offer, OfferState, Offers};
 use crate::work_orders::order_update::Change;
+use crate::work_orders::payload::exchange::Exchange;
+use crate::work_orders::state::State;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::FirmId;
 use binnacle_platform::time::Time;
 
 const HOUR_S: f64 = 3600.0;
 
-/// When an answer to what is asked now is due.
-fn due(change: &Change<'_>, hours: u32) -> Time {
+/// Deadline for an answer to an offer that is sent now.
+fn deadline(change: &Change<'_>, hours: u32) -> Time {
     Time(change.now.0.plus_seconds(f64::from(hours) * HOUR_S))
 }
 
-/// Refuses a job whose time is over.
-pub(crate) fn must_be_ahead(change: &Change<'_>, at: Time) -> Result<()> {
-    if latest(at) > change.now {
+/// Refuses a job whose time is past.
+pub(crate) fn require_future_job(change: &Change<'_>, at: Time) -> Result<()> {
+    if latest_acceptance(at) > change.now {
         return Ok(());
     }
     Err(Error::WrongState(format!(
-        "the job was for {}, which is over: it needs another time",
+        "the job was planned for {}, which is past: it needs another time",
         at.to_the_minute()
     )))
 }
 
-/// Until when someone on the quay may say yes to a job that should have begun.
-fn latest(at: Time) -> Time {
+/// Latest acceptance of a job that should have begun, for an adjuster already on the quay.
+fn latest_acceptance(at: Time) -> Time {
     Time(at.0.plus_seconds(HOUR_S))
 }
 
-/// Until when to answer: no later than the job is to begin, if that is still ahead or was
-/// just now.
+/// Deadline for an answer: the begin of the job at the latest, if that is ahead or just past.
 pub(crate) fn answer_by(change: &Change<'_>, within_hours: u32, at: Time) -> Time {
-    let due = due(change, within_hours);
-    let ends = if at > change.now { at } else { latest(at) };
-    if ends > change.now {
-        due.min(ends)
+    let deadline = deadline(change, within_hours);
+    let ends = if at > change.now {
+        at
     } else {
-        due
+        latest_acceptance(at)
+    };
+    if ends > change.now {
+        deadline.min(ends)
+    } else {
+        deadline
     }
 }
 
-/// Until when an answer leaves those whose turn comes after so many others time for theirs:
-/// the time until the job, or until they are to be asked by their terms, is shared out among
-/// all who come before and themselves. None where nobody comes after.
-pub(crate) async fn share_ends(
+/// Deadline that leaves time for the firms after the next `sent` ones: the time until the job,
+/// less their notice, is shared among all. `None` if nobody follows.
+pub(crate) async fn share_deadline(
     change: &mut Change<'_>,
     offers: &Offers,
-    asked: usize,
+    sent: usize,
 ) -> Result<Option<Time>> {
-    let at = change.whole.summary.planned_at;
+    let at = change.stored.summary.planned_at;
     let left_s = at.0.seconds_since(change.now.0);
     let (mut turns, mut share_s) = (1.0, f64::INFINITY);
     let waiting = offers.all.iter();
     let waiting = waiting.filter(|offer| offer.state == OfferState::Waiting);
-    for offer in waiting.skip(asked) {
+    for offer in waiting.skip(sent) {
         let lead_s = lead_time_s(change, offer.firm_id).await?;
         if left_s > lead_s {
             turns += 1.0;
@@ -68,23 +71,23 @@ pub(crate) async fn share_ends(
     Ok(share_s.is_finite().then(|| ends(share_s)))
 }
 
-/// How long before a job a firm wants to be asked by its terms, seconds.
+/// Notice that a firm requires by its terms, seconds.
 async fn lead_time_s(change: &mut Change<'_>, firm: FirmId) -> Result<f64> {
-    let operator = change.whole.summary.operator_id;
-    let terms = firms::terms_for(&mut change.tx, operator, firm).await?;
+    let operator = change.stored.summary.operator_id;
+    let terms = firms::find_terms(&mut change.tx, operator, firm).await?;
     Ok(terms.map_or(0.0, |terms| terms.lead_time_h * HOUR_S))
 }
 
-/// Whether there is more than so much time until the job.
+/// Returns whether the job is further ahead than this.
 fn is_in_time(change: &Change<'_>, lead_s: f64) -> bool {
-    let at = change.whole.summary.planned_at;
+    let at = change.stored.summary.planned_at;
     at.0.seconds_since(change.now.0) > lead_s
 }
 
-/// Asks whom it is the turn of, where nobody else is waited for. Whom it is too late to ask is
-/// passed over.
-pub(crate) async fn ask_next(change: &mut Change<'_>) -> Result<()> {
-    let offers = change.whole.standing().offers;
+/// Sends the next offers, if no other offer is open. Firms whose notice is too short are passed
+/// over.
+pub(crate) async fn send_next_offers(change: &mut Change<'_>) -> Result<()> {
+    let offers = change.stored.state().offers;
     if offers.state() == State::Declined {
         let waiting = offers.all.into_iter();
         for offer in waiting.filter(|offer| offer.state == OfferState::Waiting) {
@@ -94,39 +97,41 @@ pub(crate) async fn ask_next(change: &mut Change<'_>) -> Result<()> {
             }
             let text = if is_in_time(change, 0.0) {
                 let hours = lead_s / HOUR_S;
-                format!("not asked: it wants to be asked {hours} h ahead")
+                format!("not asked: it requires {hours} h notice")
             } else {
-                "not asked: the time of the job is over".to_owned()
+                "not asked: the time of the job is past".to_owned()
             };
-            let passed = Between {
+            let passed = Exchange {
                 text: Some(text),
-                ..Between::with(offer.firm())
+                ..Exchange::with(offer.firm())
             };
-            change.append(Content::Lapsed(passed)).await?;
+            change.append(OrderEvent::Lapsed(Lapsed(passed))).await?;
         }
     }
-    ask(change).await
+    send_offers(change).await
 }
 
-/// Asks those whose turn it is, if it is anyone's, and says until when they may answer.
-pub(crate) async fn ask(change: &mut Change<'_>) -> Result<()> {
-    let offers = change.whole.standing().offers;
+/// Sends the next offers, if any, with their deadlines.
+pub(crate) async fn send_offers(change: &mut Change<'_>) -> Result<()> {
+    let offers = change.stored.state().offers;
     let next: Vec<Offer> = offers.next().cloned().collect();
     if next.is_empty() {
         return Ok(());
     }
-    let at = change.whole.summary.planned_at;
+    let at = change.stored.summary.planned_at;
     let until = answer_by(change, offers.answer_within_hours, at);
-    let share = share_ends(change, &offers, next.len()).await?;
+    let share = share_deadline(change, &offers, next.len()).await?;
     let answer_by = share.map_or(until, |share| share.min(until));
     for next in next {
-        let asked = Between {
+        let sent = Exchange {
             answer_by: Some(answer_by),
             fee_eur: next.fee_eur,
             text: next.text.clone(),
-            ..Between::with(next.firm())
+            ..Exchange::with(next.firm())
         };
-        change.append(Content::Asked(asked)).await?;
+        change
+            .append(OrderEvent::OfferSent(OfferSent(sent)))
+            .await?;
     }
     Ok(())
 }

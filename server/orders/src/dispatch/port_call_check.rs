@@ -1,19 +1,19 @@
-//! Where a ship is when an order has her adjusted.
+//! Check of an order's time against the vessel's port calls.
 //!
-//! What always holds: an order whose words mean a port is for a day on which the vessel is
-//! known to be there, or no coming call there is known, nor where else she is then.
+//! What always holds: an order that names a port is planned for a day on which the vessel is
+//! known to be there, unless neither a coming call there nor another port at that time is known.
 
-use crate::dispatch::port_call_changes::{Alongside, CallFit};
-use crate::firms::port_meant;
+use crate::firms::named_port;
 use crate::work_orders::order_update::Change;
+use crate::work_orders::payload::port_call::{Alongside, CallFit};
 use binnacle_platform::db::{Tx, rows};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::VesselId;
 use binnacle_platform::time::Time;
 use binnacle_schedule::ports::{Port, PortCode};
 
-/// The ports of a vessel's calls at some time.
-async fn ports_of(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Vec<(String,)>> {
+/// Ports of a vessel's calls at a time.
+async fn ports_at(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Vec<(String,)>> {
     Ok(rows!(
         in tx,
         (String,),
@@ -25,8 +25,8 @@ async fn ports_of(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Vec<(String
     )?)
 }
 
-/// A vessel's calls at a port that are not over.
-async fn coming(
+/// Calls of a vessel at a port that are not past.
+async fn coming_calls(
     tx: &mut Tx,
     vessel: VesselId,
     port: PortCode,
@@ -48,57 +48,57 @@ async fn coming(
         .collect())
 }
 
-/// Refuses a time at which the vessel is known to be at another port than an order's, and a
-/// day without a call at its port where calls there are known.
+/// Refuses a time at which the vessel is at another port than the order's, and a day without a
+/// call at its port if calls there are known.
 ///
 /// # Errors
-/// [`Error::Invalid`], of a field.
-pub(crate) async fn must_be_there(
+/// [`Error::Invalid`], for a field.
+pub(crate) async fn require_vessel_in_port(
     change: &mut Change<'_>,
     at: Time,
     field: &'static str,
 ) -> Result<()> {
-    let (vessel, port) = (change.whole.summary.vessel_id, &change.whole.summary.port);
-    let Some(meant) = port_meant(port) else {
+    let (vessel, port) = (change.stored.summary.vessel_id, &change.stored.summary.port);
+    let Some(named) = named_port(port) else {
         return Ok(());
     };
-    let there = ports_of(&mut change.tx, vessel, at).await?;
+    let there = ports_at(&mut change.tx, vessel, at).await?;
     let there: Vec<&Port> = there
         .iter()
-        .filter_map(|(code,)| port_meant(code))
+        .filter_map(|(code,)| named_port(code))
         .collect();
     let Some(other) = there.first() else {
-        return must_lie_in_a_call(change, meant, at, field).await;
+        return require_port_call(change, named, at, field).await;
     };
-    if there.iter().any(|port| port.code == meant.code) {
+    if there.iter().any(|port| port.code == named.code) {
         return Ok(());
     }
     let detail = format!(
-        "by her port calls she is at {} ({}) then, not at {} ({})",
-        other.name, other.code, meant.name, meant.code
+        "by its port calls the vessel is at {} ({}) then, not at {} ({})",
+        other.name, other.code, named.name, named.code
     );
     Err(Error::Invalid { field, detail })
 }
 
-async fn must_lie_in_a_call(
+async fn require_port_call(
     change: &mut Change<'_>,
-    meant: &Port,
+    named: &Port,
     at: Time,
     field: &'static str,
 ) -> Result<()> {
-    let vessel = change.whole.summary.vessel_id;
-    let calls = coming(&mut change.tx, vessel, meant.code, change.now).await?;
-    let port = meant.code.to_string();
+    let vessel = change.stored.summary.vessel_id;
+    let calls = coming_calls(&mut change.tx, vessel, named.code, change.now).await?;
+    let port = named.code.to_string();
     let is_that_day =
         |call: &Alongside| matches!(call.fit(&port, at), CallFit::Fits | CallFit::OtherHour);
     if calls.is_empty() || calls.iter().any(is_that_day) {
         return Ok(());
     }
-    let there: Vec<String> = calls.iter().map(Alongside::in_words).collect();
+    let there: Vec<String> = calls.iter().map(Alongside::describe).collect();
     let detail = format!(
-        "by her port calls she is at {} ({port}) {}, not on the day of {}: choose a time in a \
-         call, or enter the call that is not known yet",
-        meant.name,
+        "by its port calls the vessel is at {} ({port}) {}, not on the day of {}: choose a time \
+            in a call, or enter the missing call",
+        named.name,
         there.join(", "),
         at.to_the_minute()
     );

@@ -1,22 +1,25 @@
-//! Another time for an order that a firm has: the operator asks, the firm says yes or no.
+//! Rescheduling of an order that a firm has: the operator proposes a time, the firm accepts or
+//! declines.
 //!
-//! What always holds: what was agreed stands until the firm says yes. The new time lies in
-//! a call of the vessel's at the order's port, for as long as a job takes, and on a day on
-//! which the firm has a team left by its terms: when it is asked, and when it says yes.
+//! What always holds: the agreed time stands until the firm accepts. The new time lies in a call
+//! of the vessel at the order's port, long enough for a job, and on a day on which the firm has a
+//! team left. Both are checked at the proposal and at the acceptance.
 
-use crate::dispatch::call_links;
-use crate::dispatch::offer_requests::{Answer, LONGEST_H, checked_terms, must_have_room, two_days};
+use crate::dispatch::offer_requests::{
+    MAX_ANSWER_HOURS, OfferAnswer, checked_terms, require_capacity,
+};
 use crate::dispatch::offer_sequence::answer_by;
-use crate::dispatch::port_call_changes::CallFit;
-use crate::dispatch::port_call_check;
-use crate::firms::{Told, port_meant};
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::offer_state::{Asked, Between, Offer, Terms};
-use crate::work_orders::order::{Order, State};
-use crate::work_orders::order_update;
+use crate::dispatch::{call_links, port_call_check};
+use crate::firms::{Requester, named_port};
+use crate::work_orders::events::{OrderEvent, RetimeAccepted, RetimeDeclined, RetimeProposed};
+use crate::work_orders::new_order::default_answer_hours;
+use crate::work_orders::offers::Offer;
+use crate::work_orders::order::Order;
 use crate::work_orders::order_update::Change;
-use crate::work_orders::shown;
-use crate::work_orders::store;
+use crate::work_orders::payload::exchange::{Exchange, NamedFirm, Terms};
+use crate::work_orders::payload::port_call::CallFit;
+use crate::work_orders::state::State;
+use crate::work_orders::{load_order, prepare_update, store};
 use axum::extract::{FromRef, State as Shared};
 use binnacle_platform::access::{PartyWriter, Writer};
 use binnacle_platform::app::App;
@@ -26,7 +29,6 @@ use binnacle_platform::http::{Id, Json, Valid, ValidOrNone, optional_text};
 use binnacle_platform::idempotency::Key;
 use binnacle_platform::ids::OrderId;
 use binnacle_platform::tenants::Tenant;
-use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -43,36 +45,36 @@ where
         .routes(routes!(decline_retime))
 }
 
-/// Another time for an order that a firm has.
+/// Proposal of another time.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NewRetime, example = json!({
     "terms": { "planned_at": "2026-12-10T08:00:00Z" }, "answer_within_hours": 24,
     "text": "She is two days late."
 }))]
-struct Retime {
-    /// The time, and the berth if another.
+struct RetimeRequest {
+    /// Time, and berth if another.
     terms: Terms,
-    /// So long the firm has for an answer, 1 to 720 hours; what was agreed stands after it.
-    #[serde(default = "two_days")]
+    /// Time for an answer, 1 to 720 hours; the agreed time stands after it.
+    #[serde(default = "default_answer_hours")]
     #[schema(minimum = 1, maximum = 720)]
     answer_within_hours: u32,
-    /// In words.
+    /// Text.
     #[serde(default)]
     #[schema(max_length = 200)]
     text: Option<String>,
 }
 
-/// Ask the firm that has an order for another time
+/// Propose another time to the firm that has an order
 ///
-/// For the operator, before the adjuster is on board. What was agreed stands until the firm
-/// accepts; asked again, the firm answers what was asked last.
+/// For the operator, before the adjuster is on board. The agreed time stands until the firm
+/// accepts. A repeated proposal replaces the last one.
 #[utoipa::path(post, path = "/work-orders/{id}/retime", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Retime,
+    params(("id" = OrderId, Path), Key), request_body = RetimeRequest,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "No firm has it, the work has begun, she is not \
-                             alongside then, or the firm has no team left that day", body = Problem),
+              (status = 409, description = "No firm has it, the work has begun, the vessel is \
+                  not alongside then, or the firm has no team left that day", body = Problem),
               (status = 422, body = Problem)))]
 async fn propose_retime(
     Shared(app): Shared<App>,
@@ -80,47 +82,53 @@ async fn propose_retime(
     writer: Writer,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(retime): Valid<Retime>,
+    Valid(retime): Valid<RetimeRequest>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "retime", &retime)?;
-    let (whole, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "retime", &retime)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return load_order(&app, writer.operator, id).await;
     }
     let hours = retime.answer_within_hours;
-    if !(1..=LONGEST_H).contains(&hours) {
+    if !(1..=MAX_ANSWER_HOURS).contains(&hours) {
         return Err(Error::Invalid {
             field: "answer_within_hours",
-            detail: format!("{hours} is outside 1 to {LONGEST_H}"),
+            detail: format!("{hours} is outside 1 to {MAX_ANSWER_HOURS}"),
         });
     }
     let terms = checked_terms(retime.terms, app.clock.now().into())?;
     let text = optional_text("text", retime.text.as_deref())?;
-    whole.must_be(&[State::Accepted], "a firm that has it is asked")?;
-    if let Some(mut change) = update.begin(&whole).await? {
+    stored.require_state(
+        &[State::Accepted],
+        "only a firm that has it can be asked for another \
+        time",
+    )?;
+    if let Some(mut change) = update.begin(&stored).await? {
         let holder = holder(&change)?;
-        must_be_possible(&mut change, &holder.firm(), &terms, Told::Operator).await?;
-        let between = Between {
+        require_possible_time(&mut change, &holder.firm(), &terms, Requester::Operator).await?;
+        let between = Exchange {
             answer_by: Some(answer_by(&change, hours, terms.planned_at)),
             terms: Some(terms),
             text,
-            ..Between::with(holder.firm())
+            ..Exchange::with(holder.firm())
         };
-        change.append(Content::RetimeProposed(between)).await?;
+        change
+            .append(OrderEvent::RetimeProposed(RetimeProposed(between)))
+            .await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    load_order(&app, writer.operator, id).await
 }
 
-/// Agree to another time
+/// Accept another time
 ///
 /// For the firm that has the order.
 #[utoipa::path(post, path = "/work-orders/{id}/retime/accept", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Answer,
+    params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "Nothing is asked, or not any more, or the call has \
-                             moved meanwhile", body = Problem),
+              (status = 409, description = "No other time is proposed, or no longer, or the call \
+                  has moved meanwhile", body = Problem),
               (status = 422, body = Problem)))]
 async fn accept_retime(
     Shared(app): Shared<App>,
@@ -128,9 +136,9 @@ async fn accept_retime(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    ValidOrNone(answer): ValidOrNone<Answer>,
+    ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<Json<Order>> {
-    let update = order_update(
+    let update = prepare_update(
         &app,
         request,
         writer,
@@ -140,10 +148,10 @@ async fn accept_retime(
         &answer,
     )?;
     let answer = answer.checked(writer.tenant)?;
-    let summary = store::summary(&app.db, writer.tenant, id).await?;
+    let summary = store::find_summary(&app.db, writer.tenant, id).await?;
     let Tenant::Firm(firm) = writer.tenant else {
         return Err(Error::WrongState(
-            "the firm that has the order answers what it is asked".to_owned(),
+            "only the firm that has the order can accept another time".to_owned(),
         ));
     };
     if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
@@ -151,35 +159,37 @@ async fn accept_retime(
         if offer.firm_id != firm {
             return Err(Error::NotFound("work order"));
         }
-        let terms = asked_terms(&change, &offer)?;
-        // What was agreed on besides the time stands.
+        let terms = proposed_terms(&change, &offer)?;
+        // Agreed terms other than the time stand.
         let agreed = offer.terms.clone();
         let terms = Terms {
             berth: (terms.berth).or_else(|| agreed.as_ref()?.berth.clone()),
             fee_eur: terms.fee_eur.or_else(|| offer.fee()),
             ..terms
         };
-        must_be_possible(&mut change, &offer.firm(), &terms, Told::Firm).await?;
-        at_its_call(&mut change, terms.planned_at).await?;
-        let agreed = Between {
+        require_possible_time(&mut change, &offer.firm(), &terms, Requester::Firm).await?;
+        call_links::link_call_at(&mut change, terms.planned_at).await?;
+        let agreed = Exchange {
             terms: Some(terms),
             text: answer.text,
-            ..Between::with(offer.firm())
+            ..Exchange::with(offer.firm())
         };
-        change.append(Content::RetimeAccepted(agreed)).await?;
+        change
+            .append(OrderEvent::RetimeAccepted(RetimeAccepted(agreed)))
+            .await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
-/// Do not agree to another time
+/// Decline another time
 ///
-/// What was agreed stands. The operator takes its question back in the same way.
+/// The agreed time stands. The operator withdraws its proposal in the same way.
 #[utoipa::path(post, path = "/work-orders/{id}/retime/decline", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Answer,
+    params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "Nothing is asked, or not any more", body = Problem),
+              (status = 409, description = "No other time is proposed, or no longer", body = Problem),
               (status = 422, body = Problem)))]
 async fn decline_retime(
     Shared(app): Shared<App>,
@@ -187,9 +197,9 @@ async fn decline_retime(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    ValidOrNone(answer): ValidOrNone<Answer>,
+    ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<Json<Order>> {
-    let update = order_update(
+    let update = prepare_update(
         &app,
         request,
         writer,
@@ -199,7 +209,7 @@ async fn decline_retime(
         &answer,
     )?;
     let answer = answer.checked(writer.tenant)?;
-    let summary = store::summary(&app.db, writer.tenant, id).await?;
+    let summary = store::find_summary(&app.db, writer.tenant, id).await?;
     if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
         let offer = holder(&change)?;
         if writer
@@ -215,83 +225,77 @@ async fn decline_retime(
                 detail: "is not the firm that has the order".to_owned(),
             });
         }
-        asked_terms(&change, &offer)?;
-        let between = Between {
+        proposed_terms(&change, &offer)?;
+        let between = Exchange {
             text: answer.text,
-            ..Between::with(offer.firm())
+            ..Exchange::with(offer.firm())
         };
-        change.append(Content::RetimeDeclined(between)).await?;
+        change
+            .append(OrderEvent::RetimeDeclined(RetimeDeclined(between)))
+            .await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
-/// The firm that has an order whose work has not begun.
+/// Firm that has an order, before the work begins.
 fn holder(change: &Change<'_>) -> Result<Offer> {
-    change
-        .whole
-        .must_be(&[State::Accepted], "a firm that has it is asked")?;
-    let offers = change.whole.standing().offers;
+    change.stored.require_state(
+        &[State::Accepted],
+        "only a firm that has it can be asked for another time",
+    )?;
+    let offers = change.stored.state().offers;
     let holder = offers.holder().cloned();
     holder.ok_or_else(|| Error::WrongState("no firm has the order".to_owned()))
 }
 
-/// What the firm is asked.
-fn asked_terms(change: &Change<'_>, offer: &Offer) -> Result<Terms> {
+/// Terms that the firm has been proposed.
+fn proposed_terms(change: &Change<'_>, offer: &Offer) -> Result<Terms> {
     let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
     let Some(terms) = offer.new_terms.clone() else {
-        return wrong("no other time is asked for");
+        return wrong("no other time is proposed");
     };
     if offer.answer_by.is_some_and(|by| by < change.now) {
-        return wrong("the question has lapsed: what was agreed stands");
+        return wrong("the proposal has lapsed: the agreed time stands");
     }
     Ok(terms)
 }
 
-/// The port that an order is for, where its call is known.
+/// Port of an order, if its call is known.
 async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
-    if let Some(port) = change.whole.standing().port {
+    if let Some(port) = change.stored.state().port {
         return Ok(Some(port));
     }
     let (vessel, planned_at) = (
-        change.whole.summary.vessel_id,
-        change.whole.summary.planned_at,
+        change.stored.summary.vessel_id,
+        change.stored.summary.planned_at,
     );
-    let id = change.whole.summary.id;
+    let id = change.stored.summary.id;
     if let Some(port) = call_links::linked_port(&mut change.tx, vessel, id).await? {
         return Ok(Some(port));
     }
     let call = call_links::call_at(&mut change.tx, vessel, planned_at).await?;
-    let meant = port_meant(&change.whole.summary.port).map(|port| port.code.to_string());
-    let is_hers = |port: &String| meant.as_ref().is_none_or(|meant| meant == port);
-    Ok(call.map(|call| call.port).filter(is_hers))
+    let named = named_port(&change.stored.summary.port).map(|port| port.code.to_string());
+    let is_orders_port = |port: &String| named.as_ref().is_none_or(|named| named == port);
+    Ok(call.map(|call| call.port).filter(is_orders_port))
 }
 
-/// Notes at which call an order is to be done whose time is another now.
-pub(crate) async fn at_its_call(change: &mut Change<'_>, at: Time) -> Result<()> {
-    let (vessel, id) = (change.whole.summary.vessel_id, change.whole.summary.id);
-    if let Some(call) = call_links::call_at(&mut change.tx, vessel, at).await? {
-        call_links::link(&mut change.tx, vessel, id, call.id).await?;
-    }
-    Ok(())
-}
-
-/// Refuses a time at which the ship is not there, or the firm has no team.
+/// Refuses a time at which the vessel is not there, or the firm has no team.
 ///
 /// # Errors
-/// [`Error::WrongState`], which says what is in the way.
-async fn must_be_possible(
+/// [`Error::WrongState`], with the reason.
+async fn require_possible_time(
     change: &mut Change<'_>,
-    firm: &Asked,
+    firm: &NamedFirm,
     terms: &Terms,
-    told: Told,
+    requester: Requester,
 ) -> Result<()> {
-    // Without any call nobody knows where she will be: the firm judges for itself.
+    // Without any known call the firm judges for itself.
     let Some(port) = order_port(change).await? else {
-        port_call_check::must_be_there(change, terms.planned_at, "planned_at").await?;
-        return must_have_room(change, firm, terms.planned_at, told).await;
+        port_call_check::require_vessel_in_port(change, terms.planned_at, "planned_at").await?;
+        return require_capacity(change, firm, terms.planned_at, requester).await;
     };
-    let (at, vessel) = (terms.planned_at, change.whole.summary.vessel_id);
+    let (at, vessel) = (terms.planned_at, change.stored.summary.vessel_id);
     let call = call_links::call_at(&mut change.tx, vessel, at).await?;
     let fit = match &call {
         Some(call) => call.alongside()?.fit(&port, at),
@@ -299,9 +303,9 @@ async fn must_be_possible(
     };
     if fit != CallFit::Fits {
         return Err(Error::WrongState(format!(
-            "she has no call at {port} that lasts for three hours from {}",
+            "the vessel has no call at {port} that lasts three hours from {}",
             at.to_the_minute()
         )));
     }
-    must_have_room(change, firm, at, told).await
+    require_capacity(change, firm, at, requester).await
 }

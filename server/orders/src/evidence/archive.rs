@@ -1,6 +1,6 @@
-//! Writing the archive.
+//! Archive of the evidence.
 
-use crate::work_orders::log_entry::sha256_hex;
+use crate::work_orders::log::canonical_json::sha256_hex;
 use anyhow::Context;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -8,36 +8,36 @@ use std::io::{Cursor, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// A file in the archive.
+/// File of the archive.
 #[derive(Clone, Debug)]
 pub struct File {
-    /// Its name.
+    /// Name in the archive.
     pub name: String,
-    /// What is in it.
+    /// Content.
     pub bytes: Vec<u8>,
 }
 
-/// A line of a log.
+/// Line of a log.
 #[derive(Clone, Debug)]
 pub struct Line {
-    /// The line; of one that is withheld, what stands for it.
+    /// Text of the line, or the substitute of one that is withheld.
     pub text: String,
-    /// SHA-256 of the line as it was written, hexadecimal.
+    /// SHA-256 of the original line, hexadecimal.
     pub sha256: String,
 }
 
-/// What an archive is made from.
+/// Content of an archive.
 #[derive(Clone, Debug)]
 pub struct Evidence {
-    /// The order's id.
+    /// Id of the order.
     pub order: String,
-    /// Lines of its log.
+    /// Lines of the log.
     pub lines: Vec<Line>,
-    /// Everything but readme, log and manifest.
+    /// All files but readme, log and manifest.
     pub files: Vec<File>,
 }
 
-/// What `manifest.json` says.
+/// Content of `manifest.json`.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Manifest {
@@ -45,21 +45,21 @@ pub(super) struct Manifest {
     pub(super) order: String,
     /// SHA-256 by name.
     pub(super) files: BTreeMap<String, String>,
-    pub(super) log: Head,
+    pub(super) log: LogHead,
 }
 
-/// How far the log went.
+/// Length of the log, with the hash of its last entry.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Head {
+pub(super) struct LogHead {
     pub(super) entries: i64,
     pub(super) last_sha256: String,
 }
 
-/// The archive as it is given out.
+/// Writes the archive.
 ///
 /// # Errors
-/// When it cannot be written, which memory alone could bring about.
+/// When memory is exhausted.
 pub fn archive(evidence: Evidence) -> anyhow::Result<Vec<u8>> {
     let texts: Vec<&str> = evidence
         .lines
@@ -69,7 +69,7 @@ pub fn archive(evidence: Evidence) -> anyhow::Result<Vec<u8>> {
     let mut log = texts.join("\n");
     log.push('\n');
     let last = evidence.lines.last().context("an order without a log")?;
-    let head = Head {
+    let head = LogHead {
         entries: evidence.lines.len() as i64,
         last_sha256: last.sha256.clone(),
     };
@@ -97,9 +97,9 @@ pub fn archive(evidence: Evidence) -> anyhow::Result<Vec<u8>> {
     write(&files)
 }
 
-/// The octets of these files in this order: the same each time.
+/// Packs files in this order; the same files give the same bytes.
 pub(super) fn write(files: &[File]) -> anyhow::Result<Vec<u8>> {
-    // Photographs are packed already; the rest is small. No file has a time of its own.
+    // Photographs are compressed already; the rest is small. Files carry no time of their own.
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
         .last_modified_time(DateTime::default())

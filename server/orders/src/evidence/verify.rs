@@ -1,21 +1,22 @@
-//! Checking an archive with nothing but what is in it.
+//! Check of an archive by its own content.
 
-use super::archive::{File, Head, Manifest, write};
-use super::covered::{self, covered};
-use crate::berth_session::photos::PhotoTaken;
-use crate::completion::complete::{Completed, SignedBy};
-use crate::work_orders::log_entry::sha256_hex;
+use super::archive::{File, LogHead, Manifest, write};
+use super::coverage::{self, report_coverage};
+use super::findings::Findings;
+use crate::work_orders::log::canonical_json::sha256_hex;
+use crate::work_orders::payload::photograph::Photo;
+use crate::work_orders::payload::signed_record::{Completion, RecordedSignature};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
 use zip::ZipArchive;
 
-/// More than this is no evidence of one adjustment.
-const MOST_BYTES: u64 = 1 << 30;
+/// Largest evidence of one adjustment, bytes.
+const MAX_ARCHIVE_BYTES: u64 = 1 << 30;
 
-/// The files of every archive; photographs are those of the log.
-const OF_THE_FORM: [&str; 6] = [
+/// Files of every archive; the log names the photographs.
+const FIXED_FILES: [&str; 6] = [
     "README.txt",
     "entries.ndjson",
     "manifest.json",
@@ -24,27 +25,12 @@ const OF_THE_FORM: [&str; 6] = [
     "record.pdf",
 ];
 
-/// Before what anyone could have written who made the archive.
+/// Prefix of facts that anyone could have written who made the archive.
 const UNSIGNED: &str = "the log says, and no signature covers it:";
 
-/// What was found.
-#[derive(Clone, Debug, Default)]
-pub struct Found {
-    /// What is wrong, a sentence each; empty when all is well.
-    pub problems: Vec<String>,
-    /// What it is and says, a sentence each.
-    pub facts: Vec<String>,
-}
-
-impl Found {
-    fn wrong(&mut self, problem: impl Into<String>) {
-        self.problems.push(problem.into());
-    }
-}
-
 /// Checks an archive.
-pub fn verify(bytes: &[u8]) -> Found {
-    let mut found = Found::default();
+pub fn verify(bytes: &[u8]) -> Findings {
+    let mut found = Findings::default();
     let files = match unpack(bytes, &mut found) {
         Ok(files) => files,
         Err(problem) => {
@@ -52,7 +38,7 @@ pub fn verify(bytes: &[u8]) -> Found {
             return found;
         }
     };
-    nothing_else(bytes, &files, &mut found);
+    check_no_extra_content(bytes, &files, &mut found);
     let manifest: Option<Manifest> = match files
         .get("manifest.json")
         .map(|b| serde_json::from_slice(b))
@@ -68,15 +54,15 @@ pub fn verify(bytes: &[u8]) -> Found {
         Some(Ok(manifest)) => Some(manifest),
     };
     if let Some(manifest) = &manifest {
-        hashes(manifest, &files, &mut found);
+        check_hashes(manifest, &files, &mut found);
     }
-    log(manifest.as_ref(), &files, &mut found);
+    check_log(manifest.as_ref(), &files, &mut found);
     found
 }
 
-fn unpack(bytes: &[u8], found: &mut Found) -> Result<BTreeMap<String, Vec<u8>>, String> {
+fn unpack(bytes: &[u8], found: &mut Findings) -> Result<BTreeMap<String, Vec<u8>>, String> {
     let mut archive =
-        ZipArchive::new(Cursor::new(bytes)).map_err(|error| format!("no archive: {error}"))?;
+        ZipArchive::new(Cursor::new(bytes)).map_err(|error| format!("not an archive: {error}"))?;
     let mut files = BTreeMap::new();
     for index in 0..archive.len() {
         let file = archive.by_index(index);
@@ -84,8 +70,11 @@ fn unpack(bytes: &[u8], found: &mut Found) -> Result<BTreeMap<String, Vec<u8>>, 
         let name = file.name().map(std::borrow::Cow::into_owned);
         let name = name.map_err(|error| format!("file {}: {error}", index + 1))?;
         let mut content = Vec::new();
-        // A file that says it is small and is not comes to its end here.
-        let read = file.by_ref().take(MOST_BYTES).read_to_end(&mut content);
+        // Bounds a file whose header understates its size.
+        let read = file
+            .by_ref()
+            .take(MAX_ARCHIVE_BYTES)
+            .read_to_end(&mut content);
         if let Err(error) = read {
             found.wrong(format!("{name}: {error}"));
         }
@@ -93,16 +82,16 @@ fn unpack(bytes: &[u8], found: &mut Found) -> Result<BTreeMap<String, Vec<u8>>, 
     }
     if archive.has_duplicate_names() {
         found.wrong(
-            "files of one name are in it more than once: what an unpacker shows may not be what \
-             is checked here",
+            "it contains files of one name more than once: an unpacker may show other content \
+                than is checked here",
         );
     }
     Ok(files)
 }
 
-/// Finds whatever is in the archive beside its files: before, between or behind them, or in
-/// what is said of them twice. These files alone make these octets alone.
-fn nothing_else(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+/// Reports content beside the archive's files: before, between or behind them, or in duplicate
+/// headers. These files alone make these bytes alone.
+fn check_no_extra_content(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     if !found.problems.is_empty() {
         return;
     }
@@ -116,18 +105,18 @@ fn nothing_else(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Fou
     files.sort_by_key(|file| file.name == "manifest.json");
     if !write(&files).is_ok_and(|made| made == bytes) {
         found.wrong(
-            "the archive is not as it was given out: something stands beside its files, or they \
-             were packed anew, and an unpacker may show what is not checked here",
+            "the archive is not in its original form: it has content beside its files, or was \
+                repacked, and an unpacker may show other content than is checked here",
         );
     }
 }
 
-fn hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+fn check_hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     for (name, sha256) in &manifest.files {
         match files.get(name) {
             None => found.wrong(format!("{name} is missing")),
             Some(content) if sha256_hex(content) != *sha256 => {
-                found.wrong(format!("{name} is not what the manifest says"));
+                found.wrong(format!("{name} differs from the manifest"));
             }
             Some(_) => {}
         }
@@ -139,27 +128,27 @@ fn hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Fo
     }
 }
 
-fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     let Some(text) = files.get("entries.ndjson") else {
         found.wrong("entries.ndjson is missing");
         return;
     };
     let Ok(text) = std::str::from_utf8(text) else {
-        found.wrong("entries.ndjson is no text");
+        found.wrong("entries.ndjson is not text");
         return;
     };
     let mut previous: Option<String> = None;
     let mut signed = 0;
     let mut withheld: Vec<String> = Vec::new();
-    let mut known: Vec<String> = OF_THE_FORM.map(str::to_owned).to_vec();
-    let mut completed: Option<Completed> = None;
+    let mut known: Vec<String> = FIXED_FILES.map(str::to_owned).to_vec();
+    let mut completed: Option<Completion> = None;
     let mut entries: i64 = 0;
-    let recorded = covered::head(files);
+    let recorded = coverage::log_head(files);
     for line in text.lines() {
         entries += 1;
         let at = format!("entries.ndjson, line {entries}");
         let Ok(entry) = serde_json::from_str::<Value>(line) else {
-            found.wrong(format!("{at} is no JSON"));
+            found.wrong(format!("{at} is not JSON"));
             previous = Some(sha256_hex(line.as_bytes()));
             continue;
         };
@@ -177,15 +166,15 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
         match entry["kind"].as_str() {
             Some("completion") => {
                 completed = content(&entry, &at, found);
-                record(completed.as_ref(), files, found);
+                check_record(completed.as_ref(), files, found);
             }
-            Some("photo") => known.extend(photo(&entry, entries, &at, files, found)),
+            Some("photo") => known.extend(check_photo(&entry, entries, &at, files, found)),
             Some("signature") => {
-                signed += signature(&entry, completed.as_ref(), &at, found);
+                signed += check_signature(&entry, completed.as_ref(), &at, found);
             }
             Some("verification") => {
                 let words = entry["content"]["words"].as_str().unwrap_or_default();
-                // The record was made before the ship sailed.
+                // The record was made before the vessel sailed.
                 found.facts.push(format!("{UNSIGNED} at sea, {words}"));
             }
             _ => {}
@@ -204,18 +193,18 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
         }
     }
     for name in files.keys().filter(|name| !known.contains(name)) {
-        found.wrong(format!("{name} is no part of this evidence"));
+        found.wrong(format!("{name} is not part of this evidence"));
     }
     if !withheld.is_empty() {
         found.facts.push(format!(
-            "entries {} are withheld: what they say cannot be looked into here",
+            "entries {} are withheld: their content cannot be checked here",
             withheld.join(", ")
         ));
     }
     if completed.is_none() {
         found.wrong("the log has no completion");
     }
-    let head = Head {
+    let head = LogHead {
         entries,
         last_sha256: previous.unwrap_or_default(),
     };
@@ -223,14 +212,14 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
         found.wrong("the log does not end where the manifest says");
     }
     found.facts.push(format!(
-        "the log has {entries} entries, the last with SHA-256 {}: whether more came after it, the \
-         shore server says",
+        "the log has {entries} entries, the last with SHA-256 {}: ask the server whether more \
+            followed",
         head.last_sha256
     ));
-    // Of a record that is not the one that was signed nothing follows.
+    // A record other than the signed one covers nothing.
     let text = files.get("record.json").map(|text| sha256_hex(text));
     if completed.is_some_and(|completed| Some(completed.record_sha256) == text) {
-        covered(files, entries, signed, found);
+        report_coverage(files, entries, signed, found);
     }
     if signed == 0 {
         found
@@ -239,13 +228,17 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
     }
 }
 
-fn content<T: DeserializeOwned>(entry: &Value, at: &str, found: &mut Found) -> Option<T> {
+fn content<T: DeserializeOwned>(entry: &Value, at: &str, found: &mut Findings) -> Option<T> {
     let read = serde_json::from_value(entry["content"].clone());
     read.map_err(|error| found.wrong(format!("{at}: {error}")))
         .ok()
 }
 
-fn record(completed: Option<&Completed>, files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+fn check_record(
+    completed: Option<&Completion>,
+    files: &BTreeMap<String, Vec<u8>>,
+    found: &mut Findings,
+) {
     let Some(completed) = completed else {
         return;
     };
@@ -270,15 +263,15 @@ fn record(completed: Option<&Completed>, files: &BTreeMap<String, Vec<u8>>, foun
     }
 }
 
-/// The name of its file.
-fn photo(
+/// Checks a photograph; returns its file name.
+fn check_photo(
     entry: &Value,
     number: i64,
     at: &str,
     files: &BTreeMap<String, Vec<u8>>,
-    found: &mut Found,
+    found: &mut Findings,
 ) -> Option<String> {
-    let photo = content::<PhotoTaken>(entry, at, found)?;
+    let photo = content::<Photo>(entry, at, found)?;
     let name = photo.file(number);
     match files.get(&name) {
         None => found.wrong(format!("{name} is missing")),
@@ -290,29 +283,34 @@ fn photo(
     Some(name)
 }
 
-/// How many signatures hold: one or none.
-fn signature(entry: &Value, completed: Option<&Completed>, at: &str, found: &mut Found) -> usize {
-    let Some(by) = content::<SignedBy>(entry, at, found) else {
+/// Returns the number of valid signatures in an entry: one or none.
+fn check_signature(
+    entry: &Value,
+    completed: Option<&Completion>,
+    at: &str,
+    found: &mut Findings,
+) -> usize {
+    let Some(by) = content::<RecordedSignature>(entry, at, found) else {
         return 0;
     };
     let Some(completed) = completed else {
         found.wrong(format!("{at}: a signature before the completion"));
         return 0;
     };
-    if let Err(error) = by.signed.checked(&completed.record_sha256) {
+    if let Err(error) = by.signature.checked(&completed.record_sha256) {
         found.wrong(format!("{at}: {error}"));
         return 0;
     }
-    let public_key = &by.signed.public_key;
+    let public_key = &by.signature.public_key;
     found.facts.push(match &by.key {
         Some(key) => format!(
-            "signed by the key {public_key}; {UNSIGNED} {} had registered it as {:?}. Whose it is, \
-             ask the firm",
+            "signed by the key {public_key}; {UNSIGNED} {} had registered it as {:?}. Ask the \
+                firm whether the key is its own",
             key.firm_name, key.name
         ),
         None => format!(
-            "signed by the key {public_key}; {UNSIGNED} no firm had registered it. Whose it is, ask \
-             the firm"
+            "signed by the key {public_key}; {UNSIGNED} no firm had registered it. Ask the firm \
+                whether the key is its own"
         ),
     });
     1

@@ -1,9 +1,8 @@
-//! Public keys that a firm signs records with.
+//! Public keys with which a firm signs records.
 //!
-//! What always holds: who registers a key has shown that they hold its private half; a
-//! key is one firm's, and once revoked it vouches for nothing signed afterwards.
+//! What always holds: whoever registers a key has proved possession of its private half. A key
+//! belongs to one firm. A revoked key vouches for nothing signed afterwards.
 
-use crate::completion::complete::KnownKey;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_platform::access::{Caller, PartyWriter};
@@ -38,35 +37,35 @@ where
 struct FirmKey {
     /// Its id.
     id: KeyId,
-    /// What the firm calls it.
+    /// The firm's name for it.
     #[schema(example = "Office, 2026")]
     name: String,
     /// Ed25519 (RFC 8032), 64 hexadecimal digits.
     public_key: String,
-    /// When it was registered.
+    /// Time of registration.
     created_at: Time,
-    /// Who registered it.
+    /// Author of the registration.
     created_by: String,
-    /// Since when it vouches for nothing any more.
+    /// Time of the revocation.
     #[schema(required)]
     revoked_at: Option<Time>,
 }
 
-/// A page of keys.
+/// Page of keys.
 #[derive(Serialize, ToSchema)]
 struct FirmKeyList {
-    /// In the order in which they were registered.
+    /// Keys in the order of their registration.
     items: Vec<FirmKey>,
     /// `after` of the next page.
     #[schema(required)]
     next: Option<String>,
 }
 
-/// A key to be registered.
+/// Key to register.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct NewFirmKey {
-    /// What the firm calls it.
+    /// The firm's name for it.
     #[schema(min_length = 1, max_length = 200, example = "Office, 2026")]
     name: String,
     /// Ed25519 (RFC 8032), 64 hexadecimal digits.
@@ -81,9 +80,15 @@ struct NewFirmKey {
 impl NewFirmKey {
     fn checked(self, firm: FirmId) -> Result<NewFirmKey> {
         let key = ed25519::key(&self.public_key)?;
-        let said = format!("binnacle firm key {firm}");
-        let called = format!("{said:?}");
-        ed25519::must_be_signed(&key, "proof", &self.proof, said.as_bytes(), &called)?;
+        let statement = format!("binnacle firm key {firm}");
+        let name_of_statement = format!("{statement:?}");
+        ed25519::must_be_signed(
+            &key,
+            "proof",
+            &self.proof,
+            statement.as_bytes(),
+            &name_of_statement,
+        )?;
         Ok(NewFirmKey {
             name: text("name", &self.name)?,
             public_key: self.public_key.to_ascii_lowercase(),
@@ -94,7 +99,7 @@ impl NewFirmKey {
 
 /// List a firm's keys
 ///
-/// Also those that were revoked.
+/// Including revoked ones.
 #[utoipa::path(get, path = "/firms/{id}/keys", tag = "adjusting",
     params(("id" = FirmId, Path), Page),
     responses((status = 200, body = FirmKeyList), (status = 401, body = Problem),
@@ -130,17 +135,17 @@ async fn rows(db: &Db, firm: FirmId, page: &Page) -> Result<Vec<FirmKey>> {
     )?)
 }
 
-/// Whoever may change the firm's keys: its own adjusters. To others it is not there.
-fn must_be_of(writer: PartyWriter, firm: FirmId) -> Result<()> {
+/// Refuses anyone but the firm's own adjusters. For others the firm does not exist.
+fn require_own_keys(writer: PartyWriter, firm: FirmId) -> Result<()> {
     if writer.tenant == Tenant::Firm(firm) {
         return Ok(());
     }
     Err(Error::NotFound("firm"))
 }
 
-/// Register a key of your firm's
+/// Register a key of your firm
 ///
-/// With a signature by it, so that nobody registers another's.
+/// With a signature by it, so that nobody registers another's key.
 #[utoipa::path(post, path = "/firms/{id}/keys", tag = "adjusting",
     params(("id" = FirmId, Path), RequestKey), request_body = NewFirmKey,
     responses((status = 201, body = FirmKey), (status = 401, body = Problem),
@@ -155,7 +160,7 @@ async fn register_key(
     key: RequestKey,
     Valid(new): Valid<NewFirmKey>,
 ) -> Result<(StatusCode, Json<FirmKey>)> {
-    must_be_of(writer, firm)?;
+    require_own_keys(writer, firm)?;
     let request_hash = idempotency::request_hash("firm key", &new)?;
     let new = new.checked(firm)?;
     let now = app.clock.now().into();
@@ -214,9 +219,9 @@ async fn find(tx: &mut Tx, firm: FirmId, id: KeyId) -> Result<FirmKey> {
     found.ok_or(Error::NotFound("key"))
 }
 
-/// Revoke a key of your firm's
+/// Revoke a key of your firm
 ///
-/// What it signed before stays signed; it vouches for nothing from now on.
+/// Earlier signatures stay valid; from now on it vouches for nothing.
 #[utoipa::path(delete, path = "/firms/{id}/keys/{key}", tag = "adjusting",
     params(("id" = FirmId, Path), ("key" = KeyId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
@@ -227,7 +232,7 @@ async fn revoke_key(
     writer: PartyWriter,
     Id((firm, key)): Id<(FirmId, KeyId)>,
 ) -> Result<StatusCode> {
-    must_be_of(writer, firm)?;
+    require_own_keys(writer, firm)?;
     let now: Time = app.clock.now().into();
     let mut tx = request.begin().await?;
     let revoked = execute!(
@@ -245,12 +250,24 @@ async fn revoke_key(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// The key as the log names it, if the order's firm has registered it and not revoked it.
-pub async fn find_active(
+/// Active key of a firm.
+pub(crate) struct ActiveKey {
+    /// The key's id.
+    pub id: KeyId,
+    /// The firm's name for it.
+    pub name: String,
+    /// The firm.
+    pub firm_id: FirmId,
+    /// The firm's name.
+    pub firm_name: String,
+}
+
+/// Finds the key of an order's firm, if it is registered and not revoked.
+pub(crate) async fn find_active(
     tx: &mut Tx,
     firm: Option<FirmId>,
     public_key: &str,
-) -> Result<Option<KnownKey>> {
+) -> Result<Option<ActiveKey>> {
     let found = row!(
         in tx,
         (KeyId, String, FirmId, String),
@@ -261,7 +278,7 @@ pub async fn find_active(
         firm,
         public_key.to_ascii_lowercase()
     )?;
-    Ok(found.map(|(id, name, firm_id, firm_name)| KnownKey {
+    Ok(found.map(|(id, name, firm_id, firm_name)| ActiveKey {
         id,
         name,
         firm_id,

@@ -1,190 +1,32 @@
-//! Firms that adjust compasses, and which operators they work for.
+//! Firms that adjust compasses, and the operators they work for.
 //!
-//! What always holds: an operator sees the firms that it works with, a firm sees itself,
-//! and a platform admin, who brings them together, sees all.
+//! What always holds: an operator sees the firms that work for it, a firm sees itself, and a
+//! platform admin, who connects them, sees all.
 
-pub mod keys;
-mod room;
+mod capacity;
+mod firm_api;
+pub(crate) mod keys;
+
 mod store;
 mod terms;
 
-pub use room::{Booking, Told, Visit, bookings, must_have_room, port_meant, teams_taken};
-pub use store::{create, engage, exists, name_for};
-pub use terms::{Terms, TermsChanged, of_operator, terms_for};
+pub use capacity::{
+    Booking, Requester, Visit, bookings, named_port, require_capacity, teams_taken,
+};
+pub use store::{create, engage, exists, find_name};
+pub use terms::{Terms, TermsChanged, find_terms, of_operator};
 
-use axum::extract::{FromRef, State};
-use axum::http::StatusCode;
-use binnacle_fleet::operators::{self, NewCompany};
-use binnacle_platform::access::{Caller, Platform};
+use axum::extract::FromRef;
 use binnacle_platform::app::App;
-use binnacle_platform::audit::RequestContext;
-use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Page, Valid, text};
-use binnacle_platform::idempotency::{self, Key};
-use binnacle_platform::ids::{FirmId, OperatorId};
-use binnacle_platform::tenants::Tenant;
-use binnacle_platform::time::Time;
-use serde::Serialize;
-use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
-use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Routes of firms, their terms and their keys.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
-    OpenApiRouter::new()
-        .routes(routes!(list_firms, create_firm))
-        .routes(routes!(find_firm))
-        .routes(routes!(engage_firm, dismiss_firm))
+    firm_api::router()
         .merge(terms::router())
         .merge(keys::router())
-}
-
-/// A company that adjusts compasses.
-#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
-struct Firm {
-    /// Its id.
-    id: FirmId,
-    /// Its name.
-    #[schema(example = "Nervión Compass")]
-    name: String,
-    /// When it was entered here.
-    created_at: Time,
-}
-
-/// A page of firms.
-#[derive(Serialize, ToSchema)]
-struct FirmList {
-    /// In the order in which they were entered.
-    items: Vec<Firm>,
-    /// `after` of the next page.
-    #[schema(required)]
-    next: Option<String>,
-}
-
-/// List the firms
-///
-/// Those that your operator works with; an adjuster's own; all for a platform admin.
-#[utoipa::path(get, path = "/firms", tag = "adjusting", params(Page),
-    responses((status = 200, body = FirmList), (status = 401, body = Problem)))]
-async fn list_firms(State(app): State<App>, caller: Caller, page: Page) -> Result<Json<FirmList>> {
-    caller.must_have_second_factor()?;
-    let who = caller.tenant();
-    let found = store::list(&app.db, who, page.after_id()?, page.fetch()).await?;
-    let listed = page.cut(found, |firm| firm.id.to_string());
-    Ok(Json(FirmList {
-        items: listed.items,
-        next: listed.next,
-    }))
-}
-
-/// Enter a firm
-///
-/// For platform admins. Its first people are made by `binnacle-server admin create
-/// adjuster`.
-#[utoipa::path(post, path = "/firms", tag = "platform", params(Key), request_body = NewCompany,
-    responses((status = 201, body = Firm), (status = 401, body = Problem),
-              (status = 403, body = Problem), (status = 422, body = Problem)))]
-async fn create_firm(
-    State(app): State<App>,
-    request: RequestContext,
-    admin: Platform,
-    key: Key,
-    Valid(new): Valid<NewCompany>,
-) -> Result<(StatusCode, Json<Firm>)> {
-    let admin = admin.must_be_writer()?;
-    let request_hash = idempotency::request_hash("firm", &new)?;
-    let name = text("name", &new.name)?;
-    let now = app.clock.now().into();
-    let wanted = FirmId::new();
-    let mut tx = request.begin().await?;
-    let made = key
-        .once(&mut tx, admin, &request_hash, wanted.0, now)
-        .await?;
-    if made == wanted.0 {
-        store::insert(&mut tx, wanted, &name, now).await?;
-    }
-    tx.commit().await?;
-    Ok((StatusCode::CREATED, found(&app, None, FirmId(made)).await?))
-}
-
-/// See a firm
-#[utoipa::path(get, path = "/firms/{id}", tag = "adjusting", params(("id" = FirmId, Path)),
-    responses((status = 200, body = Firm), (status = 401, body = Problem),
-              (status = 404, body = Problem)))]
-async fn find_firm(
-    State(app): State<App>,
-    caller: Caller,
-    Id(id): Id<FirmId>,
-) -> Result<Json<Firm>> {
-    caller.must_have_second_factor()?;
-    found(&app, caller.tenant(), id).await
-}
-
-async fn found(app: &App, who: Option<Tenant>, id: FirmId) -> Result<Json<Firm>> {
-    let firm = store::find(&app.db, who, id).await?;
-    Ok(Json(firm.ok_or(Error::NotFound("firm"))?))
-}
-
-/// Have an operator work with a firm
-///
-/// For platform admins. From then on the operator may offer the firm its orders.
-#[utoipa::path(put, path = "/operators/{id}/firms/{firm}", tag = "platform",
-    params(("id" = OperatorId, Path), ("firm" = FirmId, Path)),
-    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
-              (status = 404, body = Problem)))]
-async fn engage_firm(
-    State(app): State<App>,
-    request: RequestContext,
-    admin: Platform,
-    Id((operator, firm)): Id<(OperatorId, FirmId)>,
-) -> Result<StatusCode> {
-    admin.must_be_writer()?;
-    let mut tx = request.begin().await?;
-    if !operators::exists(&mut tx, operator).await? {
-        return Err(Error::NotFound("operator"));
-    }
-    if !store::exists(&mut tx, firm).await? {
-        return Err(Error::NotFound("firm"));
-    }
-    store::engage(&mut tx, operator, firm, app.clock.now().into()).await?;
-    tx.commit().await?;
-    Ok(StatusCode::NO_CONTENT)
-}
-
-/// Have an operator work with a firm no more
-///
-/// For platform admins. Not while the firm is asked for an order of the operator's or has
-/// one that is not done: it is cancelled or given back before.
-#[utoipa::path(delete, path = "/operators/{id}/firms/{firm}", tag = "platform",
-    params(("id" = OperatorId, Path), ("firm" = FirmId, Path)),
-    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
-              (status = 404, body = Problem),
-              (status = 409, description = "It is asked for an order or has one", body = Problem)))]
-async fn dismiss_firm(
-    request: RequestContext,
-    admin: Platform,
-    Id((operator, firm)): Id<(OperatorId, FirmId)>,
-) -> Result<StatusCode> {
-    admin.must_be_writer()?;
-    let mut tx = request.begin().await?;
-    let orders = store::orders_between(&mut tx, operator, firm).await?;
-    if !store::dismiss(&mut tx, operator, firm).await? {
-        return Err(Error::NotFound("firm"));
-    }
-    if orders > 0 {
-        let orders = match orders {
-            1 => "one order".to_owned(),
-            more => format!("{more} orders"),
-        };
-        return Err(Error::WrongState(format!(
-            "the firm is asked for {orders} of the operator's or has them: they are cancelled, \
-             or given back, before"
-        )));
-    }
-    tx.commit().await?;
-    Ok(StatusCode::NO_CONTENT)
 }

@@ -1,11 +1,24 @@
-//! Firms in the database, and which operators they work for.
+//! Firms and their engagements in the database.
 
-use super::Firm;
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::ids::{FirmId, OperatorId};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
+use serde::Serialize;
+use utoipa::ToSchema;
 use uuid::Uuid;
+
+/// Company that adjusts compasses.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+pub(super) struct Firm {
+    /// Its id.
+    pub(super) id: FirmId,
+    /// Its name.
+    #[schema(example = "Nervión Compass")]
+    pub(super) name: String,
+    /// Time of its creation here.
+    pub(super) created_at: Time,
+}
 
 /// Creates a firm.
 pub async fn create(tx: &mut Tx, name: &str, now: Time) -> Result<FirmId> {
@@ -25,7 +38,7 @@ pub(super) async fn insert(tx: &mut Tx, id: FirmId, name: &str, now: Time) -> Re
     Ok(())
 }
 
-/// Whether there is such a firm.
+/// Returns whether a firm exists.
 pub async fn exists(tx: &mut Tx, id: FirmId) -> Result<bool> {
     let found = row!(
         in tx,
@@ -36,8 +49,8 @@ pub async fn exists(tx: &mut Tx, id: FirmId) -> Result<bool> {
     Ok(found.is_some())
 }
 
-/// The name of a firm that an operator works with; none of any other.
-pub async fn name_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<String>> {
+/// Finds the name of a firm that works for an operator.
+pub async fn find_name(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<String>> {
     let found = row!(
         in tx,
         (String,),
@@ -51,7 +64,7 @@ pub async fn name_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result
     Ok(found.map(|(name,)| name))
 }
 
-/// Has an operator work with a firm; once is enough.
+/// Engages a firm for an operator; repetition has no effect.
 pub async fn engage(tx: &mut Tx, operator: OperatorId, firm: FirmId, now: Time) -> Result<()> {
     execute!(
         tx,
@@ -64,7 +77,7 @@ pub async fn engage(tx: &mut Tx, operator: OperatorId, firm: FirmId, now: Time) 
     Ok(())
 }
 
-/// Has an operator work with a firm no more; whether it did.
+/// Ends a firm's engagement; returns whether there was one.
 pub(super) async fn dismiss(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<bool> {
     let ended = execute!(
         tx,
@@ -75,9 +88,13 @@ pub(super) async fn dismiss(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> 
     Ok(ended > 0)
 }
 
-/// How many of an operator's orders that are not done a firm is asked for or has. Whoever
-/// books the firm meanwhile waits.
-pub(super) async fn orders_between(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<i64> {
+/// Counts an operator's unfinished orders that a firm has been offered or has. Other bookings of
+/// the firm wait for the transaction.
+pub(super) async fn count_open_orders(
+    tx: &mut Tx,
+    operator: OperatorId,
+    firm: FirmId,
+) -> Result<i64> {
     execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
     let found = row!(
         in tx,
@@ -94,7 +111,7 @@ pub(super) async fn orders_between(tx: &mut Tx, operator: OperatorId, firm: Firm
     Ok(found.map_or(0, |(orders,)| orders))
 }
 
-/// Keeps the terms on which a firm works for an operator.
+/// Stores a firm's terms for an operator.
 pub(super) async fn put_terms(
     tx: &mut Tx,
     operator: OperatorId,
@@ -119,7 +136,7 @@ pub(super) async fn put_terms(
     Ok(())
 }
 
-/// Forgets them; whether there were any.
+/// Removes a firm's terms for an operator; returns whether there were any.
 pub(super) async fn remove_terms(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<bool> {
     let removed = execute!(
         tx,
@@ -130,8 +147,8 @@ pub(super) async fn remove_terms(tx: &mut Tx, operator: OperatorId, firm: FirmId
     Ok(removed > 0)
 }
 
-/// The firms that an operator works with: id, name, and terms where they are said.
-pub(super) async fn with_terms(
+/// Lists the firms that work for an operator: id, name, and terms if any.
+pub(super) async fn list_with_terms(
     db: &Db,
     operator: OperatorId,
 ) -> Result<Vec<(FirmId, String, Option<String>)>> {
@@ -146,8 +163,8 @@ pub(super) async fn with_terms(
     )
 }
 
-/// The terms on which a firm works, for whomever it does.
-pub(super) async fn terms_of(tx: &mut Tx, firm: FirmId) -> Result<Vec<(OperatorId, String)>> {
+/// Lists a firm's terms, for all its operators.
+pub(super) async fn list_terms(tx: &mut Tx, firm: FirmId) -> Result<Vec<(OperatorId, String)>> {
     rows!(
         in tx,
         (OperatorId, String),
@@ -159,7 +176,7 @@ pub(super) async fn terms_of(tx: &mut Tx, firm: FirmId) -> Result<Vec<(OperatorI
     )
 }
 
-/// The firms that someone sees: all, those an operator works with, or a firm itself.
+/// Lists the firms that a tenant sees: all, those of an operator, or a firm itself.
 pub(super) async fn list(
     db: &Db,
     who: Option<Tenant>,
@@ -184,7 +201,7 @@ pub(super) async fn list(
     )
 }
 
-/// A firm, if someone sees it.
+/// Finds a firm that a tenant sees.
 pub(super) async fn find(db: &Db, who: Option<Tenant>, id: FirmId) -> Result<Option<Firm>> {
     row!(
         db,

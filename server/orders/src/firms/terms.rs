@@ -1,8 +1,7 @@
-//! On what terms a firm works for an operator: where, when, for whom, for how much.
+//! Terms of a firm for an operator: places, times, vessels and fees.
 //!
-//! What always holds: terms are the operator's own record of the firm, and no other
-//! operator sees them. A firm without days or ports can be written, and is said to be of
-//! no use until it has some.
+//! What always holds: terms are the operator's own record of the firm, hidden from other
+//! operators. Terms without days or ports are stored, and reported as unusable.
 
 use super::store;
 use axum::extract::{FromRef, State};
@@ -27,14 +26,14 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// No list in terms is longer.
-const MOST: usize = 1000;
+/// Longest list in terms.
+const MAX_LIST_LEN: usize = 1000;
 
-/// An operator has other terms with a firm.
+/// Change of a firm's terms for an operator.
 pub struct TermsChanged {
-    /// Whose terms.
+    /// Operator of the terms.
     pub operator: OperatorId,
-    /// When.
+    /// Time of the change.
     pub at: Time,
 }
 
@@ -50,7 +49,7 @@ where
         .routes(routes!(set_terms, end_terms))
 }
 
-/// On what terms a firm works.
+/// Terms of a firm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = FirmTerms, example = json!({
@@ -61,103 +60,103 @@ where
     "flags": ["PA", "MH", "NL"]
 }))]
 pub struct Terms {
-    /// The ports it serves, UN/LOCODE, with what a team's day there costs in travel.
+    /// Ports served, UN/LOCODE, with the travel cost of a team's day there.
     #[serde(default)]
     pub ports: Vec<ServedPort>,
-    /// The fee for a job, euros.
+    /// Fee for a job, euros.
     #[schema(value_type = f64, minimum = 0, maximum = 1_000_000)]
     pub fee_eur: Eur,
-    /// For each compass after the first on the same job, euros.
+    /// Fee for each further compass on the same job, euros.
     #[serde(default)]
     #[schema(value_type = f64, minimum = 0, maximum = 1_000_000)]
     pub extra_compass_eur: Eur,
-    /// Teams that it has for you on a working day; 1 if not said.
-    #[serde(default = "one")]
+    /// Teams for you on a working day; 1 by default.
+    #[serde(default = "default_count")]
     #[schema(maximum = 1000)]
     pub teams: u32,
-    /// Jobs that a team does on one day in one port; 1 if not said.
-    #[serde(default = "one")]
+    /// Jobs of a team on one day in one port; 1 by default.
+    #[serde(default = "default_count")]
     #[schema(minimum = 1, maximum = 20)]
     pub jobs_a_team_day: u32,
-    /// Days of the week on which it works, as `Mon`; Monday to Friday if not said.
-    #[serde(default = "working_week")]
+    /// Working days of the week, as `Mon`; Monday to Friday by default.
+    #[serde(default = "default_working_days")]
     #[schema(value_type = Vec<String>)]
     pub working_days: Vec<Weekday>,
-    /// Days on which it does not work.
+    /// Days without work.
     #[serde(default)]
     pub closed: Vec<NaiveDate>,
-    /// The hour at which its day begins, in the port's time; 8 if not said.
-    #[serde(default = "eight")]
+    /// Hour at which its day begins, in the port's time; 8 by default.
+    #[serde(default = "default_first_hour")]
     #[schema(minimum = 0, maximum = 24)]
     pub first_hour: f64,
-    /// The hour at which its day ends; 18 if not said.
-    #[serde(default = "eighteen")]
+    /// Hour at which its day ends; 18 by default.
+    #[serde(default = "default_last_hour")]
     #[schema(minimum = 0, maximum = 24)]
     pub last_hour: f64,
-    /// Hours from being asked to the beginning of the job.
+    /// Notice before a job, hours.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 8760)]
     pub lead_time_h: f64,
-    /// Licences that it holds.
+    /// Licences held.
     #[serde(default)]
     pub licences: Vec<String>,
-    /// Flags that accept its adjusters, ISO 3166; all, where it is empty.
+    /// Flags that accept its adjusters, ISO 3166; all, if empty.
     #[serde(default)]
     #[schema(value_type = Vec<String>)]
     pub flags: Vec<Flag>,
 }
 
-fn one() -> u32 {
+fn default_count() -> u32 {
     1
 }
 
-fn working_week() -> Vec<Weekday> {
+fn default_working_days() -> Vec<Weekday> {
     use Weekday::{Fri, Mon, Thu, Tue, Wed};
     vec![Mon, Tue, Wed, Thu, Fri]
 }
 
-fn eight() -> f64 {
+fn default_first_hour() -> f64 {
     8.0
 }
 
-fn eighteen() -> f64 {
+fn default_last_hour() -> f64 {
     18.0
 }
 
-/// A firm that an operator works with, and on what terms.
+/// Firm that works for an operator, with its terms.
 #[derive(Serialize, ToSchema)]
 #[schema(as = FirmWithTerms)]
-struct WithTerms {
+struct FirmWithTerms {
     /// The firm.
     firm_id: FirmId,
     /// Its name.
     firm_name: String,
-    /// Its terms; none where nobody has said them.
+    /// Its terms; `null` before any were set.
     #[schema(required)]
     terms: Option<Terms>,
-    /// Why the schedule leaves the firm out; empty when it does not.
+    /// Reasons for which the schedule leaves the firm out; empty when it does not.
     #[schema(example = json!(["working_days: a firm that works on no day of the week serves nobody"]))]
     problems: Vec<String>,
 }
 
-/// All firms that an operator works with.
+/// All firms that work for an operator.
 #[derive(Serialize, ToSchema)]
 #[schema(as = FirmTermsList)]
 struct TermsList {
-    /// In the order in which they were entered.
-    items: Vec<WithTerms>,
+    /// Firms in the order of their creation.
+    items: Vec<FirmWithTerms>,
 }
 
-/// List on what terms firms work for you
+/// List the terms of firms for you
 #[utoipa::path(get, path = "/firm-terms", tag = "adjusting",
     responses((status = 200, body = TermsList), (status = 401, body = Problem)))]
 async fn list_terms(State(app): State<App>, reader: Reader) -> Result<Json<TermsList>> {
     let items = of_operator(&app.db, reader.operator).await?;
-    let items = items.into_iter().map(WithTerms::new).collect();
+    let items = items.into_iter().map(FirmWithTerms::new).collect();
     Ok(Json(TermsList { items }))
 }
 
-/// The firms that an operator works with, with their terms where they are said.
+/// Lists the firms that work for an operator, with their terms if any.
 pub async fn of_operator(
     db: &Db,
     operator: OperatorId,
@@ -166,27 +165,27 @@ pub async fn of_operator(
         let terms = text.map(|text| serde_json::from_str(&text)).transpose()?;
         Ok((id, name, terms))
     };
-    let found = store::with_terms(db, operator).await?;
+    let found = store::list_with_terms(db, operator).await?;
     found.into_iter().map(read).collect()
 }
 
-/// The terms on which a firm works for an operator; none where nobody has said them.
-pub async fn terms_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<Terms>> {
-    let said = store::terms_of(tx, firm).await?;
-    let said = said.into_iter().find(|(whose, _)| *whose == operator);
-    let terms = said.map(|(_, text)| serde_json::from_str(&text));
+/// Returns the terms of a firm for an operator, if any.
+pub async fn find_terms(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<Terms>> {
+    let stored = store::list_terms(tx, firm).await?;
+    let stored = stored.into_iter().find(|(whose, _)| *whose == operator);
+    let terms = stored.map(|(_, text)| serde_json::from_str(&text));
     Ok(terms.transpose()?)
 }
 
-/// Say on what terms a firm works for you
+/// Set the terms of a firm for you
 ///
-/// The schedule plans with firms that have terms. Terms without days or ports are kept,
-/// and said to be a problem.
+/// The schedule plans with firms that have terms. Terms without days or ports are stored, and
+/// reported as a problem.
 #[utoipa::path(put, path = "/firms/{id}/terms", tag = "adjusting",
     params(("id" = FirmId, Path)), request_body = Terms,
-    responses((status = 200, body = WithTerms), (status = 401, body = Problem),
+    responses((status = 200, body = FirmWithTerms), (status = 401, body = Problem),
               (status = 403, body = Problem),
-              (status = 404, description = "Also when you do not work with it", body = Problem),
+              (status = 404, description = "Also when it does not work for you", body = Problem),
               (status = 422, body = Problem)))]
 async fn set_terms(
     State(app): State<App>,
@@ -194,11 +193,11 @@ async fn set_terms(
     writer: Writer,
     Id(firm): Id<FirmId>,
     Valid(terms): Valid<Terms>,
-) -> Result<Json<WithTerms>> {
+) -> Result<Json<FirmWithTerms>> {
     let terms = terms.checked()?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
-    let name = store::name_for(&mut tx, writer.operator, firm)
+    let name = store::find_name(&mut tx, writer.operator, firm)
         .await?
         .ok_or(Error::NotFound("firm"))?;
     let by = session::name_of(&mut tx, writer.user).await?;
@@ -210,12 +209,12 @@ async fn set_terms(
     })
     .await?;
     tx.commit().await?;
-    Ok(Json(WithTerms::new((firm, name, Some(terms)))))
+    Ok(Json(FirmWithTerms::new((firm, name, Some(terms)))))
 }
 
-/// Plan with a firm no more
+/// Remove the terms of a firm for you
 ///
-/// Its terms are removed; orders that it has stay with it.
+/// The schedule no longer plans with the firm. It keeps its orders.
 #[utoipa::path(delete, path = "/firms/{id}/terms", tag = "adjusting",
     params(("id" = FirmId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
@@ -239,10 +238,10 @@ async fn end_terms(
     Ok(StatusCode::NO_CONTENT)
 }
 
-impl WithTerms {
-    fn new((firm_id, firm_name, terms): (FirmId, String, Option<Terms>)) -> WithTerms {
-        let none = || vec!["terms: nobody has said on what terms it works".to_owned()];
-        WithTerms {
+impl FirmWithTerms {
+    fn new((firm_id, firm_name, terms): (FirmId, String, Option<Terms>)) -> FirmWithTerms {
+        let none = || vec!["terms: no terms are set".to_owned()];
+        FirmWithTerms {
             firm_id,
             firm_name,
             problems: terms.as_ref().map_or_else(none, Terms::problems),
@@ -259,17 +258,20 @@ impl Terms {
             ("licences", self.licences.len()),
             ("flags", self.flags.len()),
         ];
-        if let Some((field, length)) = lengths.into_iter().find(|(_, length)| *length > MOST) {
+        if let Some((field, length)) = lengths
+            .into_iter()
+            .find(|(_, length)| *length > MAX_LIST_LEN)
+        {
             return Err(Error::Invalid {
                 field,
-                detail: format!("{length} are more than {MOST}"),
+                detail: format!("has {length} entries, more than {MAX_LIST_LEN}"),
             });
         }
         for licence in &mut self.licences {
             *licence = text("licences", licence)?;
         }
         match input::check_firm(&self.firm("", None)) {
-            // That it is of no use is told, not refused.
+            // Unusable terms are reported, not refused.
             Ok(()) | Err(input::FirmError { idle: true, .. }) => Ok(self),
             Err(error) => Err(Error::Invalid {
                 field: error.field,
@@ -278,7 +280,7 @@ impl Terms {
         }
     }
 
-    /// Why the firm does not work then, at a port; in UTC where that is not known.
+    /// Reason for which the firm is closed at a time, at a port; in UTC for an unknown port.
     pub(super) fn closed_at(&self, at: Time, port: Option<&Port>) -> Option<String> {
         let (at, zone) = (Instant(at.0), port.map_or_else(Zone::utc, |port| port.zone));
         let day = at.date(zone);
@@ -291,8 +293,7 @@ impl Terms {
             .then(|| format!("works from {opens} to {closes} on {day}"))
     }
 
-    /// Why the firm may not adjust a vessel of a flag, where that is known, whose operator
-    /// asks for a licence.
+    /// Reason for which the firm may not adjust a vessel with this flag and required licence.
     pub(super) fn not_accepted(&self, flag: Option<Flag>, licence: Option<&str>) -> Option<String> {
         if let Some(flag) = flag
             && !self.firm("", None).is_accepted_by(Some(flag))
@@ -301,19 +302,19 @@ impl Terms {
         }
         let licence = licence.filter(|asked| !self.licences.iter().any(|held| held == asked))?;
         Some(format!(
-            "does not hold the licence that she asks for, {licence}"
+            "does not hold the licence that the vessel requires, {licence}"
         ))
     }
 
-    /// Why the schedule leaves the firm out.
+    /// Reasons for which the schedule leaves the firm out.
     pub fn problems(&self) -> Vec<String> {
         let error = input::check_firm(&self.firm("", None)).err();
         let wrong = error.map(|error| format!("{}: {}", error.field, error.detail));
-        let none = (self.teams == 0).then(|| "teams: a firm without teams does nothing".to_owned());
+        let none = (self.teams == 0).then(|| "teams: a firm without teams does no jobs".to_owned());
         wrong.into_iter().chain(none).collect()
     }
 
-    /// As the schedule has it.
+    /// Firm as the schedule's input.
     pub fn firm(&self, id: &str, name: Option<&str>) -> input::Firm {
         input::Firm {
             id: id.to_owned(),

@@ -1,15 +1,15 @@
-//! The proof at sea: settled headings since an adjustment, held against what was
-//! foretold.
+//! Verification at sea: settled headings since an adjustment, compared with its prediction.
 //!
-//! What always holds: a verdict is an entry of the order's log, in the transaction that
-//! stores the analysis whose samples it rests on; an alarm is an alert as long as the
-//! order stands failed; what has passed stays so, and a later change of the ship ends the
-//! epoch instead.
+//! What always holds: a verdict is an entry of the order's log, written in the transaction of its
+//! analysis. An alarm is an alert as long as the order has failed. A passed verification is
+//! final: a later change of the ship ends the epoch instead.
 
-use crate::work_orders::log_entry::{Author, Content};
-use crate::work_orders::order::State;
-use crate::work_orders::publish::{self, Before};
-use crate::work_orders::store;
+use crate::work_orders::events::OrderEvent;
+use crate::work_orders::log::entry::Author;
+use crate::work_orders::payload::sea_verification::SeaVerification;
+use crate::work_orders::publish::OrderBefore;
+use crate::work_orders::state::State;
+use crate::work_orders::{publish, store};
 use binnacle_adjustment::adjust::{SettledHeading, Verification, verify};
 use binnacle_compass::result::{SampleDiagnostic, SampleReason};
 use binnacle_compass::ship::EarthField;
@@ -19,29 +19,13 @@ use binnacle_platform::error::Result;
 use binnacle_platform::events::Event;
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
-use serde::{Deserialize, Serialize};
 use tracing::warn;
-use utoipa::ToSchema;
 use uuid::Uuid;
 
-/// Of one heading at sea: reference, card and sea together, degrees.
+/// Standard deviation of one heading at sea, degrees: reference, card and sea together.
 const HEADING_SD_DEG: f64 = 0.7;
 
-/// What the headings at sea say.
-#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
-#[schema(as = OrderVerification)]
-pub struct Verified {
-    /// The verdict with its figures: `passed`, `more_needed` or `alarm`.
-    pub verification: Verification,
-    /// The same in words.
-    pub words: String,
-    /// How many samples it rests on.
-    pub samples: usize,
-    /// The time of the last of them.
-    pub until: Time,
-}
-
-fn agree(headings: usize) -> String {
+fn agreement_text(headings: usize) -> String {
     if headings == 1 {
         "1 heading agrees".to_owned()
     } else {
@@ -49,21 +33,21 @@ fn agree(headings: usize) -> String {
     }
 }
 
-impl Verified {
-    fn new(verification: Verification, samples: usize, until: Time) -> Verified {
+impl SeaVerification {
+    fn new(verification: Verification, samples: usize, until: Time) -> SeaVerification {
         let words = match &verification {
             Verification::Passed {
                 headings,
                 band95_deg,
                 rms_deg,
             } => format!(
-                "{} with what was foretold, to {rms_deg:.1} degrees; the band is now \
-                 {band95_deg:.1} degrees",
-                agree(*headings)
+                "{} with the prediction, to {rms_deg:.1} degrees; the band is now \
+                    {band95_deg:.1} degrees",
+                agreement_text(*headings)
             ),
             Verification::MoreNeeded { headings, needed } => format!(
                 "{} so far; {} more {} needed",
-                agree(*headings),
+                agreement_text(*headings),
                 needed.count,
                 if needed.count == 1 { "is" } else { "are" }
             ),
@@ -73,10 +57,10 @@ impl Verified {
                 standard_error_deg,
             } => format!(
                 "on compass heading {compass_deg:03.0} the deviation is {off_deg:.1} degrees off \
-                 what was foretold (standard error {standard_error_deg:.1})"
+                    the prediction (standard error {standard_error_deg:.1})"
             ),
         };
-        Verified {
+        SeaVerification {
             verification,
             words,
             samples,
@@ -84,14 +68,9 @@ impl Verified {
         }
     }
 
-    /// Whether headings at sea bear out what was foretold.
-    pub fn has_passed(&self) -> bool {
-        matches!(self.verification, Verification::Passed { .. })
-    }
-
-    /// Whether it says something that this does not.
-    fn is_news_after(&self, last: Option<&Verified>) -> bool {
-        let headings = |verified: &Verified| match verified.verification {
+    /// Returns whether the verdict differs from the last one.
+    fn differs_from(&self, last: Option<&SeaVerification>) -> bool {
+        let headings = |verified: &SeaVerification| match verified.verification {
             Verification::MoreNeeded { headings, .. } => Some(headings),
             Verification::Passed { .. } | Verification::Alarm { .. } => None,
         };
@@ -103,7 +82,7 @@ impl Verified {
     }
 }
 
-/// Holds a compass's samples against what its last adjustment foretold.
+/// Compares a compass's samples with the prediction of its last adjustment.
 pub async fn after_analysis(
     tx: &mut Tx,
     vessel: VesselId,
@@ -111,14 +90,14 @@ pub async fn after_analysis(
     samples: &[SampleDiagnostic],
     now: Time,
 ) -> Result<Vec<Event>> {
-    let last = store::last_completed(tx, vessel, compass).await?;
+    let last = store::find_last_completed(tx, vessel, compass).await?;
     let Some((order, State::Adjusted, _)) = last else {
         return Ok(Vec::new());
     };
-    let mut whole = store::lock(tx, vessel, order).await?;
-    let standing = whole.standing();
-    let before = Before::of(&whole);
-    let Some(completed) = standing.completed else {
+    let mut stored = store::lock(tx, vessel, order).await?;
+    let state = stored.state();
+    let before = OrderBefore::from_order(&stored);
+    let Some(completed) = state.completion else {
         return Ok(Vec::new());
     };
     let counts = |found: &&SampleDiagnostic| {
@@ -126,7 +105,10 @@ pub async fn after_analysis(
             && matches!(found.reason, None | Some(SampleReason::NoModel))
     };
     let counted: Vec<&SampleDiagnostic> = samples.iter().filter(counts).collect();
-    let settled: Vec<SettledHeading> = counted.iter().filter_map(|found| settled(found)).collect();
+    let settled: Vec<SettledHeading> = counted
+        .iter()
+        .filter_map(|found| settled_heading(found))
+        .collect();
     let (Some(last), Some(here)) = (counted.last(), settled.last().map(|last| last.earth)) else {
         return Ok(Vec::new());
     };
@@ -137,21 +119,21 @@ pub async fn after_analysis(
             return Ok(Vec::new());
         }
     };
-    let verified = Verified::new(verification, settled.len(), Time(last.sample.time));
-    if !verified.is_news_after(standing.verified.as_ref()) {
+    let verified = SeaVerification::new(verification, settled.len(), Time(last.sample.time));
+    if !verified.differs_from(state.verification.as_ref()) {
         return Ok(Vec::new());
     }
     if matches!(verified.verification, Verification::Passed { .. }) {
         let text = serde_json::to_string(&verified)?;
-        store::verified(tx, &whole.summary, now, &text).await?;
+        store::store_verification(tx, &stored.summary, now, &text).await?;
     }
     let author = Author::server();
-    let content = Content::Verification(Box::new(verified));
-    store::append(tx, &mut whole, Uuid::now_v7(), &author, now, content).await?;
-    publish::tell(tx, &whole, &before, now).await
+    let content = OrderEvent::Verification(Box::new(verified));
+    store::append(tx, &mut stored, Uuid::now_v7(), &author, now, content).await?;
+    publish::publish_changes(tx, &stored, &before, now).await
 }
 
-fn settled(found: &SampleDiagnostic) -> Option<SettledHeading> {
+fn settled_heading(found: &SampleDiagnostic) -> Option<SettledHeading> {
     Some(SettledHeading {
         compass: found.sample.compass,
         deviation_deg: found.deviation_deg?,
@@ -169,12 +151,12 @@ pub async fn unconfirmed_adjustment(
     vessel: VesselId,
     compass: CompassId,
 ) -> Result<Option<UnconfirmedAdjustment>> {
-    let last = store::last_completed(tx, vessel, compass).await?;
+    let last = store::find_last_completed(tx, vessel, compass).await?;
     let Some((order, State::Failed, adjusted_at)) = last else {
         return Ok(None);
     };
-    let whole = store::lock(tx, vessel, order).await?;
-    let verified = whole.standing().verified;
+    let stored = store::lock(tx, vessel, order).await?;
+    let verified = stored.state().verification;
     Ok(verified.map(|verified| UnconfirmedAdjustment {
         order,
         adjusted_at,
@@ -198,7 +180,7 @@ mod tests {
             };
             let so_far = Verification::MoreNeeded { headings, needed };
             let until = Timestamp::parse("2026-11-21T12:00:00Z").unwrap();
-            Verified::new(so_far, headings, until.into()).words
+            SeaVerification::new(so_far, headings, until.into()).words
         };
         assert_eq!(words(1, 4), "1 heading agrees so far; 4 more are needed");
         assert_eq!(words(4, 1), "4 headings agree so far; 1 more is needed");

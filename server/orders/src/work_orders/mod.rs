@@ -1,32 +1,35 @@
-//! Work orders: one compass of one vessel, adjusted at the berth without a swing; offered to
-//! firms, and carried to its end by the one that takes it.
+//! Work orders: the adjustment of one compass of one vessel at the berth, without a swing.
 //!
 //! What always holds:
 //!
-//! - An order is its log: entries that are never changed or removed, each naming the
-//!   hash of the one before. How it stands follows from them, in the same transaction.
-//! - The same request again under its key writes nothing more, and is answered by the
-//!   order as it is: a page at the binnacle sends again after a bad connection.
-//! - What is foretold says so until headings at sea agree. Nothing here issues a
+//! - An order is its log: entries that are never changed or removed, each with the hash of
+//!   the one before. The state follows from them, in the same transaction.
+//! - A repeated request under its key writes nothing more, and is answered by the present
+//!   order: the page at the binnacle retries after a bad connection.
+//! - A prediction is called one until headings at sea agree. Nothing here issues a
 //!   certificate.
 
-pub(crate) mod entry_list;
-pub(crate) mod firm_view;
-mod idempotency_keys;
-pub mod log_entry;
+pub(crate) mod events;
+pub(crate) mod log;
+pub(crate) mod new_order;
 mod notification_text;
-pub(crate) mod offer_state;
+pub(crate) mod offers;
 pub(crate) mod order;
 pub(crate) mod order_state;
 pub(crate) mod order_update;
+pub(crate) mod payload;
 pub(crate) mod publish;
-pub(crate) mod queries;
 pub(crate) mod refusal;
+pub(crate) mod state;
 pub(crate) mod store;
 mod subscriber;
+pub(crate) mod summary;
 
-pub use order::{NewOrder, State};
+pub use log::canonical_json::sha256_hex;
+pub use new_order::{NewOffer, NewOrder};
+pub use payload::port_call::{Alongside, CallFit};
 pub use refusal::{Cure, NotAdjustableFields, Refusal};
+pub use state::State;
 pub use store::lock_compass;
 pub use subscriber::{refuse_amended_binnacle, refuse_leave_of_service};
 
@@ -41,10 +44,9 @@ use binnacle_platform::tenants::Tenant;
 use order::Order;
 use order_update::OrderUpdate;
 use serde::Serialize;
-use store::Whole;
 
-/// A request to change an order, told from others by what it asks.
-pub(crate) fn order_update<'a>(
+/// Prepares a change of an order; `what` distinguishes it from other requests.
+pub(crate) fn prepare_update<'a>(
     app: &'a App,
     request: RequestContext,
     writer: impl Into<PartyWriter>,
@@ -63,14 +65,14 @@ pub(crate) fn order_update<'a>(
     })
 }
 
-/// The order as it is.
-pub(crate) async fn shown(
+/// Returns the order as it is.
+pub(crate) async fn load_order(
     app: &App,
     tenant: impl Into<Tenant>,
     id: OrderId,
 ) -> Result<Json<Order>> {
     let tenant = tenant.into();
-    let whole: Whole = store::whole(&app.db, tenant, id).await?;
-    let standing = whole.standing();
-    Ok(Json(Order::new(whole.summary, standing, tenant)))
+    let stored = store::find(&app.db, tenant, id).await?;
+    let state = stored.state();
+    Ok(Json(Order::new(stored.summary, state, tenant)))
 }

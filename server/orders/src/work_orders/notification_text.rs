@@ -1,167 +1,87 @@
-//! What people are told of an order, in words, and on which side.
+//! Notifications of an order's events, in words.
 //!
-//! What always holds: who does something is not told of it by us, but of a call that moves
-//! all are; what is between the operator and one firm is told to no other.
+//! What always holds: nobody is notified of their own action, except of a moved port call,
+//! which everybody is notified of. An exchange with one firm is shown to no other.
 
-use crate::dispatch::port_call_changes::{CallFit, CallMoved};
-use crate::work_orders::log_entry::{Content, Entry};
-use crate::work_orders::offer_state::{Between, OfferState};
-use crate::work_orders::order::Summary;
-use binnacle_adjustment::adjust::Verification;
+use crate::work_orders::events::{Circumstances, Headline};
+use crate::work_orders::log::entry::Entry;
+use crate::work_orders::offers::OfferState;
+use crate::work_orders::summary::Summary;
 use binnacle_platform::mail;
 use binnacle_platform::notices::{Kind, Notice};
 use std::fmt::Write;
 
-/// Who reads it.
+/// Reader of a notification.
 #[derive(Clone, Copy)]
-enum Side {
+enum Reader {
     Operator,
     Firm,
 }
 
-/// What the operator's people are told of an entry; `was` is how the offer to the entry's
-/// firm stood before.
+/// Returns the notification of an entry for the operator's people. `offer_before` is the
+/// state of the offer to the entry's firm before it.
 pub(crate) fn for_operator(
     summary: &Summary,
     entry: &Entry,
-    was: Option<OfferState>,
+    offer_before: Option<OfferState>,
 ) -> Option<Notice> {
-    let by_firm = entry.author.firm_id.is_some();
-    let firm = |said: &Between| said.firm.firm_name.clone();
-    let (kind, what) = match &entry.content {
-        Content::Accepted(said) => (Kind::Answered, format!("{} accepts the job", firm(said))),
-        Content::Declined(said) if by_firm && was == Some(OfferState::Accepted) => {
-            (Kind::Answered, format!("{} gives the job back", firm(said)))
-        }
-        Content::Declined(said) if by_firm => {
-            (Kind::Answered, format!("{} declines the job", firm(said)))
-        }
-        Content::Proposed(said) => (
-            Kind::Answered,
-            format!("{} proposes other terms", firm(said)),
-        ),
-        Content::Lapsed(said) if was == Some(OfferState::Waiting) => (
-            Kind::AnswerLate,
-            format!("{} cannot be asked in time", firm(said)),
-        ),
-        Content::Lapsed(said) if was == Some(OfferState::Proposed) => (
-            Kind::AnswerLate,
-            format!("no answer in time to the terms of {}", firm(said)),
-        ),
-        Content::Lapsed(said) => (
-            Kind::AnswerLate,
-            format!("no answer in time from {}", firm(said)),
-        ),
-        Content::RetimeAccepted(said) => (
-            Kind::Answered,
-            format!("{} agrees to another time", firm(said)),
-        ),
-        Content::RetimeDeclined(said) if by_firm => (
-            Kind::Answered,
-            format!("{} does not agree to another time", firm(said)),
-        ),
-        Content::RetimeLapsed(said) => (
-            Kind::AnswerLate,
-            format!("no answer in time from {} to another time", firm(said)),
-        ),
-        Content::CallMoved(moved) => (Kind::CallMoved, call_moved(moved).to_owned()),
-        Content::Message(said) if by_firm => (Kind::Message, format!("{} writes", firm(said))),
-        Content::OnBoard(_) => (Kind::OnBoard, "the adjuster is on board".to_owned()),
-        Content::Completion(_) => (Kind::Completed, "adjusted, and signed".to_owned()),
-        content => {
-            let (kind, what) = verified(content)?;
-            (kind, what.to_owned())
-        }
-    };
-    Some(told(
-        kind,
-        &what,
-        facts(summary, Side::Operator),
+    let event = entry.content.event();
+    let headline = event.operator_headline(circumstances(entry, offer_before))?;
+    Some(notice(
+        &headline,
+        facts(summary, Reader::Operator),
         summary,
         entry,
     ))
 }
 
-/// What a firm's people are told of an entry that they may see.
+/// Returns the notification of an entry for the people of a firm that may see it.
 pub(crate) fn for_firm(
     summary: &Summary,
     entry: &Entry,
-    was: Option<OfferState>,
+    offer_before: Option<OfferState>,
 ) -> Option<Notice> {
-    let by_firm = entry.author.firm_id.is_some();
-    let (kind, what) = match &entry.content {
-        Content::Asked(_) => (Kind::Offered, "a job is offered to you"),
-        Content::ProposalAccepted(_) => (Kind::Answered, "your terms are agreed to"),
-        Content::ProposalDeclined(_) => (Kind::Answered, "your terms are declined"),
-        Content::Lapsed(_) if was == Some(OfferState::Proposed) => {
-            (Kind::AnswerLate, "no answer in time to your terms")
-        }
-        Content::Lapsed(_) => (Kind::AnswerLate, "you have not answered in time"),
-        Content::RetimeProposed(_) => (Kind::Offered, "another time is asked of you"),
-        Content::RetimeDeclined(_) if !by_firm => {
-            (Kind::Answered, "another time is asked of you no more")
-        }
-        Content::RetimeLapsed(_) => (
-            Kind::AnswerLate,
-            "you have not answered in time to another time",
-        ),
-        Content::CallMoved(moved) => (Kind::CallMoved, call_moved(moved)),
-        Content::Message(_) if !by_firm => (Kind::Message, "the operator writes"),
-        Content::Cancelled(_) => (Kind::Withdrawn, "the job is cancelled"),
-        content => verified(content)?,
-    };
-    Some(told(kind, what, facts(summary, Side::Firm), summary, entry))
+    let event = entry.content.event();
+    let headline = event.firm_headline(circumstances(entry, offer_before))?;
+    Some(notice(
+        &headline,
+        facts(summary, Reader::Firm),
+        summary,
+        entry,
+    ))
 }
 
-/// What a firm's people are told when its offer is taken back; why is not their business.
+fn circumstances(entry: &Entry, offer_before: Option<OfferState>) -> Circumstances {
+    Circumstances {
+        by_firm: entry.author.firm_id.is_some(),
+        offer_before,
+    }
+}
+
+/// Returns the notification of a withdrawn offer for the firm's people. It keeps the reason
+/// confidential.
 pub(crate) fn withdrawn(summary: &Summary, last: &Entry) -> Notice {
-    let facts = facts(summary, Side::Firm);
+    let headline = Headline::new(Kind::Withdrawn, "the offer is withdrawn");
+    let facts = facts(summary, Reader::Firm);
     Notice {
-        text: facts + "\nAnother firm may have it, or it is not to be done.\n",
-        ..told(
-            Kind::Withdrawn,
-            "the offer is withdrawn",
-            String::new(),
-            summary,
-            last,
-        )
+        text: facts + "\nAnother firm may have the job, or it is cancelled.\n",
+        ..notice(&headline, String::new(), summary, last)
     }
 }
 
-fn call_moved(moved: &CallMoved) -> &'static str {
-    match (&moved.call.is, moved.call.fit) {
-        (None, _) => "the port call is withdrawn",
-        (_, CallFit::Fits) => "the port call has moved",
-        (_, CallFit::OtherHour) => "the port call has moved, another hour is needed",
-        (_, CallFit::NeedsNewDay) => "the port call has moved, a new day is needed",
-        (_, CallFit::NoCall) => "the port call is at another port now",
-    }
-}
-
-fn verified(content: &Content) -> Option<(Kind, &'static str)> {
-    let Content::Verification(verified) = content else {
-        return None;
-    };
-    match verified.verification {
-        Verification::Passed { .. } => Some((Kind::Verified, "verified at sea")),
-        Verification::Alarm { .. } => Some((
-            Kind::VerificationFailed,
-            "the sea does not confirm the adjustment",
-        )),
-        Verification::MoreNeeded { .. } => None,
-    }
-}
-
-fn told(kind: Kind, what: &str, facts: String, summary: &Summary, entry: &Entry) -> Notice {
+fn notice(headline: &Headline, facts: String, summary: &Summary, entry: &Entry) -> Notice {
     let mut text = facts;
-    if let Some(said) = said(&entry.content) {
+    if let Some(quote) = entry.content.event().quote() {
         // Writing to a string cannot fail.
-        let _ = write!(text, "\n{}: {said}\n", entry.author.name);
+        let _ = write!(text, "\n{}: {quote}\n", entry.author.name);
     }
     Notice {
-        kind,
+        kind: headline.kind,
         urgent: false,
-        subject: format!("{}: {what} at {}", summary.vessel_name, summary.port),
+        subject: format!(
+            "{}: {} at {}",
+            summary.vessel_name, headline.words, summary.port
+        ),
         text,
         path: format!("/work-orders/{}", summary.id),
         vessel: summary.vessel_id,
@@ -170,8 +90,8 @@ fn told(kind: Kind, what: &str, facts: String, summary: &Summary, entry: &Entry)
     }
 }
 
-/// What is asked for, a fact on each line.
-fn facts(summary: &Summary, reader: Side) -> String {
+/// Facts of the order, one on each line.
+fn facts(summary: &Summary, reader: Reader) -> String {
     let berth = summary.berth.as_deref();
     let berth = berth.map_or_else(String::new, |berth| format!(", berth {berth}"));
     let mut lines = vec![
@@ -181,9 +101,9 @@ fn facts(summary: &Summary, reader: Side) -> String {
         format!("Planned:   {}", summary.planned_at.to_the_minute()),
     ];
     match (reader, &summary.firm) {
-        (Side::Firm, _) => lines.push(format!("Operator:  {}", summary.operator_name)),
-        (Side::Operator, Some(firm)) => lines.push(format!("Firm:      {firm}")),
-        (Side::Operator, None) => {}
+        (Reader::Firm, _) => lines.push(format!("Operator:  {}", summary.operator_name)),
+        (Reader::Operator, Some(firm)) => lines.push(format!("Firm:      {firm}")),
+        (Reader::Operator, None) => {}
     }
     if let Some(by) = summary.answer_by {
         lines.push(format!("Answer by: {}", by.to_the_minute()));
@@ -192,26 +112,4 @@ fn facts(summary: &Summary, reader: Side) -> String {
         .iter()
         .map(|line| mail::one_line(line) + "\n")
         .collect()
-}
-
-/// What was said, and what is proposed, in words.
-fn said(content: &Content) -> Option<String> {
-    if let Content::Verification(verified) = content {
-        return Some(verified.words.clone());
-    }
-    if let Content::Cancelled(said) = content {
-        return Some(said.text.clone());
-    }
-    let said = content.between()?;
-    let terms = said.terms.as_ref().map(|terms| {
-        let berth = terms.berth.as_deref();
-        let berth = berth.map_or_else(String::new, |berth| format!(", berth {berth}"));
-        let fee = terms.fee_eur;
-        let fee = fee.map_or_else(String::new, |eur| format!(", for {eur:.2} euros"));
-        format!("{}{berth}{fee}.", terms.planned_at.to_the_minute())
-    });
-    let fee = said.fee_eur.map(|eur| format!("For {eur:.2} euros."));
-    let words = fee.into_iter().chain(terms).chain(said.text.clone());
-    let words: Vec<String> = words.collect();
-    (!words.is_empty()).then(|| words.join(" "))
 }

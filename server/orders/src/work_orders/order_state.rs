@@ -1,249 +1,118 @@
-//! How an order stands: what follows from the entries of its log, one after the other.
+//! State of an order: the fold of the events in its log.
 //!
 //! What always holds: it is a function of the log alone, so that the state in the
-//! database can be derived again.
+//! database can be derived second.
 
-use crate::berth_session::berth_reading::Read;
-use crate::berth_session::photos::PhotoTaken;
-use crate::berth_session::plan::Planned;
-use crate::berth_session::second_reading::WHOLE;
-use crate::berth_session::second_reading_api::ReadAgain;
-use crate::berth_session::steps::{Moved, StepSaid, Verdict};
-use crate::completion::complete::{Completed, SignedBy};
-use crate::dispatch::port_call_changes::CallChange;
-use crate::verification::Verified;
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::offer_state::Offers;
-use crate::work_orders::order::State;
+use crate::work_orders::offers::Offers;
+use crate::work_orders::payload::chosen_plan::ChosenPlan;
+use crate::work_orders::payload::photograph::Photo;
+use crate::work_orders::payload::port_call::CallChange;
+use crate::work_orders::payload::recorded_reading::RecordedReading;
+use crate::work_orders::payload::recorded_second_reading::{
+    PARTS_WITH_VERTICAL, RecordedSecondReading,
+};
+use crate::work_orders::payload::sea_verification::SeaVerification;
+use crate::work_orders::payload::signed_record::{Completion, RecordedSignature};
+use crate::work_orders::payload::step_result::StepResult;
+use crate::work_orders::state::State;
 use binnacle_adjustment::adjust::{
-    CompletedStep, Corrector, Limits, PredictedTable, Step, UpdatedPrediction, Verification,
+    CompletedStep, Corrector, Limits, PredictedTable, Step, UpdatedPrediction,
 };
 use binnacle_adjustment::binnacle::{Binnacle, Setting};
-use binnacle_compass::angle::wrap_180;
 use binnacle_platform::time::Time;
 
-/// How an order stands.
-#[derive(Clone, Debug)]
-pub(crate) struct Standing {
-    /// How far it has come.
+/// State of an order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct OrderState {
+    /// State as the API names it.
     pub state: State,
-    /// What became of its offers to firms.
+    /// Offers to firms.
     pub offers: Offers,
-    /// For when it is, as it was written or agreed.
-    planned_at: Option<Time>,
-    /// What became of its port call since its time was agreed.
-    pub call: Option<CallChange>,
-    /// The port that it is for, where its call has ever moved.
+    /// Time of the job, as ordered or agreed.
+    pub planned_at: Option<Time>,
+    /// Change of the port call since the time was agreed.
+    pub call_change: Option<CallChange>,
+    /// Port of the job, if its call has ever moved.
     pub port: Option<String>,
-    /// What a plan must keep to.
+    /// Limits on plans.
     pub limits: Limits,
-    /// The last reading that was taken.
-    pub read: Option<Read>,
-    /// The binnacle, its correctors as strong as they were found to be, standing as they
-    /// stood when the magnetometer was read.
+    /// Last reading at the berth that was accepted.
+    pub reading: Option<RecordedReading>,
+    /// Binnacle with the strengths found so far, its correctors set as at the reading.
     pub binnacle: Option<Binnacle>,
-    /// What of that was learnt from steps, in order.
-    strengths: Vec<Strength>,
-    /// How they stand now, where they were moved since.
+    /// Strengths inferred from steps, in order.
+    pub inferred_strengths: Vec<InferredStrength>,
+    /// Setting of the correctors, if they were moved since the reading.
     pub moved_to: Option<Setting>,
-    /// The plan that is followed.
-    pub plan: Option<Planned>,
-    /// How many of its steps are done.
+    /// Plan being followed.
+    pub plan: Option<ChosenPlan>,
+    /// Number of its steps done.
     pub steps_done: usize,
-    /// What became of the last step.
-    pub last_step: Option<StepSaid>,
-    /// All steps that were done since the last reading, with what the compass showed.
+    /// Result of the last step.
+    pub last_step: Option<StepResult>,
+    /// Steps done since the last reading, with the turns of the compass.
     pub steps: Vec<CompletedStep>,
-    /// Heeling magnets moved before a second reading without its vertical part that became
-    /// the one to plan from: nothing has shown these steps.
-    unshown: Vec<CompletedStep>,
-    /// At how many of them someone has looked since, to say how the correctors stand.
-    pub looked_at: usize,
-    /// What the magnetometer said after them, the correctors standing as they stand.
-    pub again: Option<Box<ReadAgain>>,
-    /// Someone has said since that reading how the correctors stand.
-    pub looked_since: bool,
-    /// The first reading of an order that was planned anew from a second one.
-    pub first: Option<Box<Read>>,
-    /// How the compass was before, by the last plan from the first reading.
-    pub before: Option<Box<Before>>,
-    /// How it stood before a second reading became the one to plan from: until something
-    /// else is done it may be read once more.
-    undone: Option<Box<Standing>>,
-    /// What the compass read last at the berth, degrees.
+    /// Heeling magnets moved before a second reading without a vertical part, which became
+    /// the reading to plan from. No reading confirms these steps.
+    pub unconfirmed_heeling_steps: Vec<CompletedStep>,
+    /// Number of steps inspected since, when the settings were reported.
+    pub inspected_steps: usize,
+    /// Second reading of the present settings.
+    pub second_reading: Option<Box<RecordedSecondReading>>,
+    /// True if the settings were reported since the second reading.
+    pub inspected_since_reading: bool,
+    /// First reading of an order that was replanned from a second one.
+    pub first_reading: Option<Box<RecordedReading>>,
+    /// Predictions before any corrector was moved, by the last plan from the first reading.
+    pub before_adjustment: Option<Box<CompassBefore>>,
+    /// State before a second reading became the one to plan from. Until the next event of
+    /// the session the field may be read once more.
+    pub before_second_reading: Option<Box<OrderState>>,
+    /// Last reading of the compass at the berth, degrees.
     pub compass_deg: Option<f64>,
-    /// How it was completed.
-    pub completed: Option<Completed>,
-    /// What the headings at sea say.
-    pub verified: Option<Verified>,
+    /// Completion of the adjustment.
+    pub completion: Option<Completion>,
+    /// Last verdict of headings at sea.
+    pub verification: Option<SeaVerification>,
     /// Photographs, in order.
-    pub photos: Vec<PhotoTaken>,
+    pub photos: Vec<Photo>,
     /// Signatures by firms' keys, in order.
-    pub signatures: Vec<SignedBy>,
+    pub signatures: Vec<RecordedSignature>,
 }
 
-/// A strength that was learnt from what the compass showed of a step.
+/// Strength of a corrector, inferred from the turn of the compass at a step.
 #[derive(Clone, Debug)]
-pub(crate) struct Strength {
-    /// The step, its corrector where it is taken to stand.
+pub(crate) struct InferredStrength {
+    /// The step, with the assumed position of its corrector.
     pub step: Step,
-    /// What the compass read before it, degrees.
+    /// Reading of the compass before it, degrees.
     pub before_deg: f64,
-    /// The binnacle as it was known before it.
+    /// Binnacle as known before it.
     pub binnacle: Binnacle,
 }
 
-/// How a compass was before its correctors were moved.
+/// Predictions for a compass before its correctors were moved.
 #[derive(Clone, Debug)]
-pub(crate) struct Before {
+pub(crate) struct CompassBefore {
     /// Deviations at the berth and in the waters.
     pub deviations: Vec<PredictedTable>,
-    /// Heeling error on north, degrees for each degree of heel.
+    /// Heeling error on north, degrees per degree of heel.
     pub heeling_deg_per_deg: Option<f64>,
 }
 
-impl Standing {
-    /// How an order stands whose log says this.
-    pub(crate) fn of<'a>(log: impl Iterator<Item = &'a Content>) -> Standing {
-        let mut standing = Standing {
-            state: State::Planned,
-            offers: Offers::default(),
-            planned_at: None,
-            call: None,
-            port: None,
-            limits: Limits::default(),
-            read: None,
-            binnacle: None,
-            strengths: Vec::new(),
-            moved_to: None,
-            plan: None,
-            steps_done: 0,
-            last_step: None,
-            steps: Vec::new(),
-            unshown: Vec::new(),
-            looked_at: 0,
-            again: None,
-            looked_since: false,
-            first: None,
-            before: None,
-            undone: None,
-            compass_deg: None,
-            completed: None,
-            verified: None,
-            photos: Vec::new(),
-            signatures: Vec::new(),
-        };
-        for content in log {
-            standing.take(content);
-        }
-        standing
+impl OrderState {
+    /// Takes over the state of the offers.
+    pub(crate) fn follow_offers(&mut self) {
+        self.state = self.offers.state();
     }
 
-    /// Goes on by an entry.
-    pub(crate) fn take(&mut self, content: &Content) {
-        self.offers.take(content);
-        if let Content::ProposalAccepted(said) | Content::RetimeAccepted(said) = content
-            && let Some(terms) = &said.terms
-        {
-            let at = Some(terms.planned_at);
-            // Another time was agreed, as the call is now; a fee alone says nothing of it.
-            if self.planned_at != at || matches!(content, Content::RetimeAccepted(_)) {
-                (self.planned_at, self.call) = (at, None);
-            }
-        }
-        match content {
-            Content::Offered(_)
-            | Content::Asked(_)
-            | Content::Accepted(_)
-            | Content::Declined(_)
-            | Content::Proposed(_)
-            | Content::ProposalAccepted(_)
-            | Content::ProposalDeclined(_)
-            | Content::Lapsed(_) => self.state = self.offers.state(),
-            Content::CallMoved(moved) => {
-                self.port.get_or_insert_with(|| moved.call.was.port.clone());
-                self.call = Some(moved.call.clone());
-            }
-            Content::OnBoard(_) => self.state = State::OnBoard,
-            Content::Photo(photo) => self.photos.push(photo.clone()),
-            Content::Signature(signature) => self.signatures.push(signature.clone()),
-            Content::Opened(opened) => {
-                self.limits = opened.order.limits.unwrap_or_default();
-                self.planned_at = Some(opened.order.planned_at);
-            }
-            Content::RetimeProposed(_)
-            | Content::RetimeAccepted(_)
-            | Content::RetimeDeclined(_)
-            | Content::RetimeLapsed(_)
-            | Content::Remark(_)
-            | Content::Message(_) => {}
-            Content::BerthReading(read) => {
-                if self.take_reading(read) {
-                    (self.first, self.before, self.undone) = (None, None, None);
-                    self.unshown.clear();
-                }
-            }
-            Content::SecondReading(read) => self.take_again(read),
-            Content::Plan(planned) => self.follow(planned.as_ref().clone()),
-            Content::Step(done) => {
-                self.undone = None;
-                self.keep_only_a_disproof();
-                // What nothing explains is read again, from where it was.
-                if done.said.verdict != Verdict::Unexplained {
-                    self.compass_deg = Some(done.said.after_deg);
-                }
-                self.last_step = Some(done.said.clone());
-                if let Some(binnacle) = &done.binnacle {
-                    let before = self.binnacle.replace(binnacle.clone());
-                    self.strengths.extend(before.map(|binnacle| Strength {
-                        step: done.step.clone(),
-                        before_deg: done.said.before_deg,
-                        binnacle,
-                    }));
-                }
-                if let Some(setting) = &done.setting {
-                    self.moved_to = Some(setting.clone());
-                }
-                if done.said.is_confirmed() {
-                    self.steps_done += 1;
-                    let turned_deg = wrap_180(done.said.after_deg - done.said.before_deg);
-                    self.steps.push(CompletedStep {
-                        step: done.step.clone(),
-                        turned_deg: Some(turned_deg),
-                    });
-                } else if done.setting.is_some() {
-                    self.plan = None;
-                    self.state = State::Measured;
-                }
-                if let Some(plan) = &done.replanned {
-                    self.follow(plan.as_ref().clone());
-                }
-            }
-            Content::CorrectorSettings(moved) => self.take_settings(moved),
-            Content::Completion(completed) => {
-                self.completed = Some(completed.as_ref().clone());
-                self.state = State::Adjusted;
-            }
-            Content::Verification(verified) => {
-                self.state = match verified.verification {
-                    Verification::Passed { .. } => State::Verified,
-                    Verification::MoreNeeded { .. } => State::Adjusted,
-                    Verification::Alarm { .. } => State::Failed,
-                };
-                self.verified = Some(verified.as_ref().clone());
-            }
-            Content::Closed(_) => {
-                self.state = match self.state {
-                    State::Adjusted => State::ClosedUnverified,
-                    _ => State::Closed,
-                };
-            }
-            Content::Cancelled(_) => self.state = State::Cancelled,
-        }
+    /// Takes over another agreed time, with the port call as it is now.
+    pub(crate) fn agree_time(&mut self, planned_at: Time) {
+        (self.planned_at, self.call_change) = (Some(planned_at), None);
     }
 
-    /// Whether it was taken.
-    fn take_reading(&mut self, read: &Read) -> bool {
+    /// Takes over a reading to plan from; returns whether it was accepted.
+    pub(crate) fn accept_reading(&mut self, read: &RecordedReading) -> bool {
         let Some(basis) = &read.basis else {
             return false;
         };
@@ -251,133 +120,54 @@ impl Standing {
             return false;
         }
         self.binnacle = Some(basis.binnacle.clone());
-        self.strengths.clear();
+        self.inferred_strengths.clear();
         self.moved_to = None;
         self.plan = None;
         self.steps_done = 0;
         self.last_step = None;
         self.steps.clear();
-        self.looked_at = 0;
-        self.again = None;
+        self.inspected_steps = 0;
+        self.second_reading = None;
         self.compass_deg = read.given.compass_deg;
-        self.read = Some(read.clone());
+        self.reading = Some(read.clone());
         self.state = State::Measured;
         true
     }
 
-    fn take_settings(&mut self, moved: &Moved) {
-        let stands = self.setting() == Some(&moved.after);
-        // What it read before they were moved says nothing of how it reads now.
-        let still = self.compass_deg.filter(|_| stands);
-        if !stands {
-            // What was learnt of them held for how they were taken to stand.
-            let again = self.again.take().filter(|_| !moved.explains_reading);
-            self.step_back();
-            self.again = again.filter(|again| again.is_disproof());
-        }
-        if let Some(anew) = &moved.learnt_anew
-            && let Some(index) = self.disputed(moved)
-        {
-            self.strengths.truncate(index + 1);
-            self.strengths[index].step = anew.step.clone();
-            self.binnacle = Some(anew.binnacle.clone());
-            // What was said of it, and planned by it, holds no longer.
-            (self.last_step, self.plan) = (None, None);
-        }
-        self.compass_deg = moved.compass_deg.or(still);
-        // Someone has looked at every one of them.
-        self.looked_at = self.steps.len();
-        self.looked_since = self.again.is_some();
-        self.moved_to = Some(moved.after.clone());
-        match &self.plan {
-            Some(plan) if plan.plan.setting == moved.after => {
-                self.steps_done = plan.plan.steps.len();
-            }
-            // Another way than the plan's: there has to be another plan.
-            _ => {
-                self.plan = None;
-                self.state = State::Measured;
-            }
-        }
-    }
-
-    /// The strength that this word disputes: its corrector stands elsewhere than it was
-    /// taken to, or the compass was read once more after its step.
-    pub(crate) fn disputed_by(&self, moved: &Moved) -> Option<&Strength> {
-        let index = self.disputed(moved)?;
-        self.strengths.get(index)
-    }
-
-    fn disputed(&self, moved: &Moved) -> Option<usize> {
-        let taken = self.setting()?;
-        let mut strengths = self.strengths.iter();
-        let elsewhere =
-            strengths.position(|strength| strength.step.is_contradicted(taken, &moved.after));
-        let is_last = |said: &StepSaid| said.verdict == Verdict::OtherStrength;
-        let is_read_again = *taken == moved.after
-            && moved.compass_deg.is_some()
-            && self.last_step.as_ref().is_some_and(is_last);
-        elsewhere.or_else(|| {
-            let last = self.strengths.len().checked_sub(1);
-            last.filter(|_| is_read_again)
-        })
-    }
-
-    fn take_again(&mut self, read: &ReadAgain) {
-        self.step_back();
-        let before = self.clone();
-        if let (Some(anew), Some(first)) = (&read.anew, before.read.clone())
-            && self.take_reading(anew)
-        {
-            if read.said.parts.len() < WHOLE {
-                let heels = |done: &&CompletedStep| done.step.corrector == Corrector::Heeling;
-                self.unshown
-                    .extend(before.steps.iter().filter(heels).cloned());
-            } else {
-                self.unshown.clear();
-            }
-            // Nothing was moved since it was read last.
-            self.compass_deg = anew.given.compass_deg.or(before.compass_deg);
-            self.first.get_or_insert_with(|| Box::new(first));
-            self.undone = Some(Box::new(before));
-        }
-        self.again = Some(Box::new(read.clone()));
-        self.looked_since = false;
-    }
-
-    /// As it stood before the last second reading became the one to plan from, where
-    /// nothing was done about it since.
-    pub(crate) fn step_back(&mut self) {
-        let Some(before) = self.undone.take() else {
+    /// Restores the state before the second reading became the one to plan from, if nothing
+    /// followed it.
+    pub(crate) fn restore_first_reading(&mut self) {
+        let Some(before) = self.before_second_reading.take() else {
             return;
         };
         let before = *before;
         self.state = before.state;
-        self.read = before.read;
+        self.reading = before.reading;
         self.binnacle = before.binnacle;
-        self.strengths = before.strengths;
+        self.inferred_strengths = before.inferred_strengths;
         self.moved_to = before.moved_to;
         self.plan = before.plan;
         self.steps_done = before.steps_done;
         self.last_step = before.last_step;
         self.steps = before.steps;
-        self.unshown = before.unshown;
-        self.looked_at = before.looked_at;
-        self.again = before.again;
-        self.looked_since = before.looked_since;
-        self.first = before.first;
+        self.unconfirmed_heeling_steps = before.unconfirmed_heeling_steps;
+        self.inspected_steps = before.inspected_steps;
+        self.second_reading = before.second_reading;
+        self.inspected_since_reading = before.inspected_since_reading;
+        self.first_reading = before.first_reading;
         self.compass_deg = before.compass_deg;
     }
 
-    fn follow(&mut self, planned: Planned) {
-        // Only a plan from a second reading knows what that has shown.
-        if self.is_read_anew() {
-            self.again = None;
+    /// Takes over a plan to follow.
+    pub(crate) fn follow_plan(&mut self, planned: ChosenPlan) {
+        // A plan from a second reading already includes it.
+        if self.plans_from_second_reading() {
+            self.second_reading = None;
         }
-        self.keep_only_a_disproof();
-        self.undone = None;
-        if self.first.is_none() {
-            self.before = Some(Box::new(Before {
+        self.drop_confirmation();
+        self.before_second_reading = None;
+        if self.first_reading.is_none() {
+            self.before_adjustment = Some(Box::new(CompassBefore {
                 deviations: planned.plan.before.clone(),
                 heeling_deg_per_deg: planned.plan.heeling.before_deg_per_deg,
             }));
@@ -387,19 +177,25 @@ impl Standing {
         self.state = State::Adjusting;
     }
 
-    /// Whether the second reading is the one to plan from.
-    fn is_read_anew(&self) -> bool {
-        let anew = self.again.as_ref().and_then(|again| again.anew.as_ref());
-        anew.is_some_and(|anew| anew.refusal.is_none())
+    /// Returns whether the second reading is the one to plan from.
+    fn plans_from_second_reading(&self) -> bool {
+        let reading = self
+            .second_reading
+            .as_ref()
+            .and_then(|second| second.reading_to_plan_from.as_ref());
+        reading.is_some_and(|reading| reading.refusal.is_none())
     }
 
-    /// What confirmed the correctors as they stood says nothing of how they stand now; what
-    /// did not is not undone by moving more of them.
-    fn keep_only_a_disproof(&mut self) {
-        self.again = self.again.take().filter(|again| again.is_disproof());
+    /// Drops a second reading that confirmed settings which no longer hold. One that
+    /// contradicted them stays: moving more correctors does not answer it.
+    pub(crate) fn drop_confirmation(&mut self) {
+        self.second_reading = self
+            .second_reading
+            .take()
+            .filter(|second| second.is_contradiction());
     }
 
-    /// The step to do now.
+    /// Next step of the plan.
     pub(crate) fn next_step(&self) -> Option<&Step> {
         if self.state != State::Adjusting {
             return None;
@@ -407,48 +203,55 @@ impl Standing {
         self.plan.as_ref()?.plan.steps.get(self.steps_done)
     }
 
-    /// How the correctors stand now.
+    /// Present setting of the correctors.
     pub(crate) fn setting(&self) -> Option<&Setting> {
         let as_read = self.binnacle.as_ref().map(|binnacle| &binnacle.setting);
         self.moved_to.as_ref().or(as_read)
     }
 
-    /// Whether a corrector was moved.
-    pub(crate) fn was_moved(&self) -> bool {
-        if self.first.is_some() {
+    /// Returns whether a corrector was moved.
+    pub(crate) fn has_moved_correctors(&self) -> bool {
+        if self.first_reading.is_some() {
             return true;
         }
         let as_read = self.binnacle.as_ref().map(|binnacle| &binnacle.setting);
         self.moved_to.is_some() && self.moved_to.as_ref() != as_read
     }
 
-    /// What the magnetometer said after the steps, where it confirmed them.
-    pub(crate) fn learnt(&self) -> Option<&UpdatedPrediction> {
-        let again = self.again.as_ref()?;
-        again.learnt.as_ref().filter(|_| !again.is_disproof())
+    /// Prediction updated by a second reading that confirmed the steps.
+    pub(crate) fn confirmed_prediction(&self) -> Option<&UpdatedPrediction> {
+        let second = self.second_reading.as_ref()?;
+        second
+            .prediction
+            .as_ref()
+            .filter(|_| !second.is_contradiction())
     }
 
-    /// What the magnetometer said after the steps, where it did not confirm them.
-    pub(crate) fn disproof(&self) -> Option<&ReadAgain> {
-        self.again.as_deref().filter(|again| again.is_disproof())
+    /// Second reading that did not confirm the steps.
+    pub(crate) fn contradicting_reading(&self) -> Option<&RecordedSecondReading> {
+        self.second_reading
+            .as_deref()
+            .filter(|second| second.is_contradiction())
     }
 
-    /// Steps that neither the compass on this heading nor the magnetometer has shown.
-    pub(crate) fn hidden_steps(&self) -> Vec<&str> {
-        let confirmed = self.learnt().and(self.again.as_ref());
+    /// Steps that neither the compass on this heading nor the magnetometer confirms.
+    pub(crate) fn unconfirmed_steps(&self) -> Vec<&str> {
+        let confirmed = self
+            .confirmed_prediction()
+            .and(self.second_reading.as_ref());
         let shows = |corrector: Corrector| {
-            let is_whole = |again: &ReadAgain| again.said.parts.len() == WHOLE;
-            confirmed.is_some_and(|again| corrector != Corrector::Heeling || is_whole(again))
+            let is_whole =
+                |second: &RecordedSecondReading| second.result.parts.len() == PARTS_WITH_VERTICAL;
+            confirmed.is_some_and(|second| corrector != Corrector::Heeling || is_whole(second))
         };
-        let hidden = self.unshown.iter().chain(&self.steps);
+        let hidden = self.unconfirmed_heeling_steps.iter().chain(&self.steps);
         let hidden = hidden.filter(|done| !done.step.seen && !shows(done.step.corrector));
         hidden.map(|done| done.step.words.as_str()).collect()
     }
 
-    /// Whether the sea has confirmed it.
+    /// Returns whether headings at sea confirmed the adjustment.
     pub(crate) fn is_verified(&self) -> bool {
-        self.verified
-            .as_ref()
-            .is_some_and(|verified| matches!(verified.verification, Verification::Passed { .. }))
+        let verification = self.verification.as_ref();
+        verification.is_some_and(SeaVerification::has_passed)
     }
 }

@@ -1,14 +1,14 @@
-//! A change of an order on its way into the database.
+//! Change of an order, on its way into the database.
 //!
-//! What always holds: whoever changes an order holds its lock until the transaction
-//! ends; the entry, what follows from it and the live event are that one transaction;
-//! and the same request under the same key writes one entry.
+//! What always holds: a change holds the order's lock until the transaction ends. The entry, its
+//! consequences and the live events are that one transaction. The same request under the same key
+//! writes one entry.
 
-use crate::work_orders::idempotency_keys;
-use crate::work_orders::log_entry::{Author, Content};
-use crate::work_orders::order::State;
-use crate::work_orders::publish::{self, Before};
-use crate::work_orders::store::{self, Whole};
+use crate::work_orders::events::OrderEvent;
+use crate::work_orders::log::entry::Author;
+use crate::work_orders::publish::OrderBefore;
+use crate::work_orders::store::StoredOrder;
+use crate::work_orders::{publish, store};
 use binnacle_platform::access::PartyWriter;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -21,67 +21,65 @@ use binnacle_platform::session;
 use binnacle_platform::time::Time;
 use uuid::Uuid;
 
-/// A request to change an order.
+/// Request to change an order.
 pub(crate) struct OrderUpdate<'a> {
     pub(crate) app: &'a App,
     pub(crate) request: RequestContext,
     pub(crate) writer: PartyWriter,
     pub(crate) order: OrderId,
     pub(crate) key: Key,
-    /// What tells it from another.
+    /// Hash that distinguishes the request from others.
     pub(crate) hash: Vec<u8>,
 }
 
-/// A change that has begun.
+/// Change in an open transaction.
 pub(crate) struct Change<'a> {
     app: &'a App,
     pub(crate) tx: Tx,
-    pub(crate) whole: Whole,
+    pub(crate) stored: StoredOrder,
     pub(crate) author: Author,
     pub(crate) now: Time,
-    /// The id of the entry to be written.
+    /// Id of the next entry.
     pub(crate) id: Uuid,
-    /// The order before.
-    before: Before,
-    told: Vec<Event>,
+    /// The order before the change.
+    before: OrderBefore,
+    live_events: Vec<Event>,
 }
 
 impl<'a> OrderUpdate<'a> {
-    /// The order as it is, and whether this request has been done already.
-    pub(crate) async fn look(&self) -> Result<(Whole, Option<Uuid>)> {
+    /// Loads the order, and the entry of this request if it was processed before.
+    pub(crate) async fn load(&self) -> Result<(StoredOrder, Option<Uuid>)> {
         let tenant = self.writer.tenant;
-        let whole = store::whole(&self.app.db, tenant, self.order).await?;
+        let stored = store::find(&self.app.db, tenant, self.order).await?;
         let db = &self.app.db;
-        let done =
-            idempotency_keys::find(&self.key, db, tenant, &whole.summary, &self.hash).await?;
-        Ok((whole, done))
+        let done = store::find_written(&self.key, db, tenant, &stored.summary, &self.hash).await?;
+        Ok((stored, done))
     }
 
-    /// Begins to change it, unless it has gone on since it was looked at; none when this
-    /// request has been done meanwhile.
-    pub(crate) async fn begin(self, seen: &Whole) -> Result<Option<Change<'a>>> {
+    /// Begins the change, unless the order has changed since `seen`. `None` if this request was
+    /// processed meanwhile.
+    pub(crate) async fn begin(self, seen: &StoredOrder) -> Result<Option<Change<'a>>> {
         let begun = self.begin_on(seen.summary.vessel_id).await?;
         if let Some(change) = &begun
-            && change.whole.summary.last_seq != seen.summary.last_seq
+            && change.stored.summary.last_seq != seen.summary.last_seq
         {
             return Err(Error::WrongState(
-                "the order has gone on meanwhile: look at it again".to_owned(),
+                "the order has changed meanwhile: load it again".to_owned(),
             ));
         }
         Ok(begun)
     }
 
-    /// Begins to change an order of a vessel's as it is now, without having looked before:
-    /// whoever does has to look at what is in the change.
+    /// Begins the change of an order of this vessel in its present state, which the caller must
+    /// check. `None` if this request was processed before.
     pub(crate) async fn begin_on(self, vessel: VesselId) -> Result<Option<Change<'a>>> {
         let now = self.app.clock.now().into();
         let mut tx = self.request.begin().await?;
-        let whole = store::lock(&mut tx, vessel, self.order).await?;
+        let stored = store::lock(&mut tx, vessel, self.order).await?;
         let wanted = Uuid::now_v7();
         let tenant = self.writer.tenant;
-        let (key, order) = (&self.key, &whole.summary);
-        let written =
-            idempotency_keys::once(key, &mut tx, tenant, order, &self.hash, wanted).await?;
+        let (key, order) = (&self.key, &stored.summary);
+        let written = store::write_once(key, &mut tx, tenant, order, &self.hash, wanted).await?;
         if written != wanted {
             return Ok(None);
         }
@@ -90,7 +88,7 @@ impl<'a> OrderUpdate<'a> {
             name: session::name_of(&mut tx, self.writer.user).await?,
             firm_id: tenant.firm(),
         };
-        Ok(Some(Change::new(self.app, tx, whole, author, now, wanted)))
+        Ok(Some(Change::new(self.app, tx, stored, author, now, wanted)))
     }
 }
 
@@ -98,7 +96,7 @@ impl<'a> Change<'a> {
     pub(crate) fn new(
         app: &'a App,
         tx: Tx,
-        whole: Whole,
+        stored: StoredOrder,
         author: Author,
         now: Time,
         id: Uuid,
@@ -106,16 +104,16 @@ impl<'a> Change<'a> {
         Change {
             app,
             tx,
-            before: Before::of(&whole),
-            whole,
+            before: OrderBefore::from_order(&stored),
+            stored,
             author,
             now,
             id,
-            told: Vec::new(),
+            live_events: Vec::new(),
         }
     }
 
-    /// A change that nobody asked for.
+    /// Begins a change by the server itself.
     pub(crate) async fn by_server(
         app: &'a App,
         vessel: VesselId,
@@ -123,57 +121,45 @@ impl<'a> Change<'a> {
     ) -> Result<Change<'a>> {
         let now = app.clock.now().into();
         let mut tx = app.db.begin().await?;
-        let whole = store::lock(&mut tx, vessel, order).await?;
+        let stored = store::lock(&mut tx, vessel, order).await?;
         let author = Author::server();
-        Ok(Change::new(app, tx, whole, author, now, Uuid::now_v7()))
+        Ok(Change::new(app, tx, stored, author, now, Uuid::now_v7()))
     }
 
     /// Writes the next entry.
-    pub(crate) async fn append(&mut self, content: Content) -> Result<()> {
-        // The first entry is the one that the request's key stands for.
+    pub(crate) async fn append(&mut self, content: OrderEvent) -> Result<()> {
+        // The request's key stands for the first entry.
         let id = std::mem::replace(&mut self.id, Uuid::now_v7());
-        let (tx, whole) = (&mut self.tx, &mut self.whole);
-        store::append(tx, whole, id, &self.author, self.now, content).await
+        let (tx, stored) = (&mut self.tx, &mut self.stored);
+        store::append(tx, stored, id, &self.author, self.now, content).await
     }
 
-    /// Tells dashboards of something else that the change brings.
-    pub(crate) async fn tell(&mut self, kind: Kind) -> Result<()> {
-        let vessel = self.whole.summary.vessel_id;
+    /// Adds a live event for something else that the change brings.
+    pub(crate) async fn add_live_event(&mut self, kind: Kind) -> Result<()> {
+        let vessel = self.stored.summary.vessel_id;
         let event = events::insert(&mut self.tx, vessel, kind, self.now).await?;
-        self.told.push(event);
+        self.live_events.push(event);
         Ok(())
     }
 
-    /// Makes it durable, and tells both sides.
+    /// Commits the change, and publishes its events.
     pub(crate) async fn commit(self) -> Result<()> {
         let app = self.app;
-        let (tx, told) = self.settle().await?;
+        let (tx, live_events) = self.finish().await?;
         tx.commit().await?;
-        for event in told {
+        for event in live_events {
             app.publish(event);
         }
         app.work.notify_one();
         Ok(())
     }
 
-    /// Ends it in a transaction that goes on; the events are to be published, and the work
-    /// that follows to be woken, once that is committed.
-    pub(crate) async fn settle(mut self) -> Result<(Tx, Vec<Event>)> {
-        let news = publish::tell(&mut self.tx, &self.whole, &self.before, self.now);
-        let news = news.await?;
-        self.told.extend(news);
-        Ok((self.tx, self.told))
-    }
-}
-
-impl Whole {
-    /// Refuses what cannot be done to an order in its state.
-    pub(crate) fn must_be(&self, allowed: &[State], what: &str) -> Result<()> {
-        if allowed.contains(&self.summary.state) {
-            return Ok(());
-        }
-        let state = serde_json::to_value(self.summary.state)?;
-        let state = state.as_str().unwrap_or_default().to_owned();
-        Err(Error::WrongState(format!("the order is {state}: {what}")))
+    /// Ends the change in a transaction that goes on. After its commit the caller publishes the
+    /// events and wakes the worker.
+    pub(crate) async fn finish(mut self) -> Result<(Tx, Vec<Event>)> {
+        let changes = publish::publish_changes(&mut self.tx, &self.stored, &self.before, self.now);
+        let changes = changes.await?;
+        self.live_events.extend(changes);
+        Ok((self.tx, self.live_events))
     }
 }

@@ -1,15 +1,15 @@
-//! Telling both sides of an order what happened: live, and by their webhooks.
+//! Publication of an order's changes: live events, webhooks and notifications for both sides.
 //!
-//! What always holds: news is written in the transaction that makes it true. A firm is
-//! told of what is between it and the operator, and of everything else only while the
-//! order is its own.
+//! What always holds: all of it is written in the transaction of the change. A firm is informed
+//! of exchanges with the operator, and of everything else only while it has the order.
 
-use crate::work_orders::log_entry::{Content, Entry};
+use crate::work_orders::events::Audience;
+use crate::work_orders::log::entry::Entry;
 use crate::work_orders::notification_text;
-use crate::work_orders::offer_state::{Offer, OfferState, Offers};
-use crate::work_orders::order::{State, Summary};
-use crate::work_orders::store::Whole;
-use binnacle_adjustment::adjust::Verification;
+use crate::work_orders::offers::{Offer, OfferState, Offers};
+use crate::work_orders::state::State;
+use crate::work_orders::store::StoredOrder;
+use crate::work_orders::summary::Summary;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
 use binnacle_platform::events::{self, Event};
@@ -22,57 +22,52 @@ use binnacle_platform::webhooks;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-/// An order as it was before a change.
-pub(crate) struct Before {
+/// Order as it was before a change.
+pub(crate) struct OrderBefore {
     last_seq: i64,
     offers: Offers,
 }
 
-impl Before {
-    pub(crate) fn of(whole: &Whole) -> Before {
-        Before {
-            last_seq: whole.summary.last_seq,
-            offers: whole.standing().offers,
+impl OrderBefore {
+    pub(crate) fn from_order(stored: &StoredOrder) -> OrderBefore {
+        OrderBefore {
+            last_seq: stored.summary.last_seq,
+            offers: stored.state().offers,
         }
     }
-}
 
-impl Before {
-    /// How the offer to a firm stood.
-    fn was(&self, firm: FirmId) -> Option<OfferState> {
-        self.offers.of(firm).map(|offer| offer.state)
+    /// State of the offer to a firm.
+    fn offer_state(&self, firm: FirmId) -> Option<OfferState> {
+        self.offers.to_firm(firm).map(|offer| offer.state)
     }
 }
 
-/// Tells of what was written since; the live events, to be published after the commit.
-pub(crate) async fn tell(
+/// Writes the webhooks, notifications and live events of the entries since `before`.
+/// Returns the live events, to be published after the commit.
+pub(crate) async fn publish_changes(
     tx: &mut Tx,
-    whole: &Whole,
-    before: &Before,
+    stored: &StoredOrder,
+    before: &OrderBefore,
     now: Time,
 ) -> Result<Vec<Event>> {
-    let summary = &whole.summary;
+    let summary = &stored.summary;
     let new = |entry: &&Entry| entry.seq > before.last_seq;
-    let new: Vec<&Entry> = whole.log.iter().filter(new).collect();
-    // The operator is told once of what several firms are told.
-    let once = new.iter().copied().enumerate().filter(|(at, entry)| {
-        let moved = |entry: &Entry| matches!(entry.content, Content::CallMoved(_));
-        !moved(entry) || !new[..*at].iter().any(|earlier| moved(earlier))
-    });
-    let once: Vec<&Entry> = once.map(|(_, entry)| entry).collect();
-    let offers = whole.standing().offers;
-    let mut told = Vec::new();
+    let new: Vec<&Entry> = stored.log.iter().filter(new).collect();
+    let once = without_repetitions(&new);
+    let offers = stored.state().offers;
+    let mut messages = Vec::new();
     for entry in &once {
-        if let Some(kind) = kind(&entry.content) {
-            told.push(message(kind, summary, entry, now));
+        if let Some(kind) = entry.content.event().webhook() {
+            messages.push(entry_message(kind, summary, entry, now));
         }
     }
     let operator = Tenant::Operator(summary.operator_id);
-    webhooks::announce(tx, operator, &told, now).await?;
+    webhooks::announce(tx, operator, &messages, now).await?;
     let by = author(&new);
     let notices = once.iter().filter_map(|entry| {
-        let firm = entry.content.between().map(|said| said.firm.firm_id);
-        notification_text::for_operator(summary, entry, firm.and_then(|firm| before.was(firm)))
+        let exchange = entry.content.event().exchange();
+        let offer_before = exchange.and_then(|exchange| before.offer_state(exchange.firm.firm_id));
+        notification_text::for_operator(summary, entry, offer_before)
     });
     let published = NoticesPublished {
         tenant: operator,
@@ -83,20 +78,20 @@ pub(crate) async fn tell(
     tx.publish(&published).await?;
     let (vessel, order) = (summary.vessel_id, summary.id);
     let mut live = vec![events::insert_of_order(tx, vessel, order, None, now).await?];
-    // In the order of their ids: no two transactions wait for each other.
+    // In the order of their ids, so that no two transactions wait for each other.
     for firm in firms(&before.offers, &offers) {
-        let was = before.was(firm);
-        let Some(offer) = offers.of(firm) else {
+        let offer_before = before.offer_state(firm);
+        let Some(offer) = offers.to_firm(firm) else {
             continue;
         };
-        let told = messages_for(summary, offer, was, &new, now);
-        // Who was passed over was not asked.
-        let passed = (was, offer.state) == (Some(OfferState::Waiting), OfferState::Lapsed);
-        if told.is_empty() || passed {
+        let messages = messages_for(summary, offer, offer_before, &new, now);
+        // A firm that was passed over never received an offer.
+        let passed = (offer_before, offer.state) == (Some(OfferState::Waiting), OfferState::Lapsed);
+        if messages.is_empty() || passed {
             continue;
         }
-        webhooks::announce(tx, Tenant::Firm(firm), &told, now).await?;
-        let notices = notices_for(summary, offer, was, &new);
+        webhooks::announce(tx, Tenant::Firm(firm), &messages, now).await?;
+        let notices = notices_for(summary, offer, offer_before, &new);
         let published = NoticesPublished {
             tenant: Tenant::Firm(firm),
             notices,
@@ -109,131 +104,104 @@ pub(crate) async fn tell(
     Ok(live)
 }
 
+/// Returns the entries for the operator: of one that the log repeats for each firm, the
+/// first.
+fn without_repetitions<'a>(new: &[&'a Entry]) -> Vec<&'a Entry> {
+    let is_repeated = |entry: &Entry| entry.content.event().is_repeated_per_firm();
+    let once = new.iter().copied().enumerate().filter(|(at, entry)| {
+        !is_repeated(entry) || !new[..*at].iter().any(|earlier| is_repeated(earlier))
+    });
+    once.map(|(_, entry)| entry).collect()
+}
+
 fn firms(before: &Offers, after: &Offers) -> BTreeSet<FirmId> {
     let all = before.all.iter().chain(&after.all);
     all.map(|offer| offer.firm_id).collect()
 }
 
+/// Returns the webhook messages for a firm.
 fn messages_for(
     summary: &Summary,
     offer: &Offer,
-    was: Option<OfferState>,
+    offer_before: Option<OfferState>,
     new: &[&Entry],
     now: Time,
 ) -> Vec<Message> {
     let seen = summary.seen_with(offer);
-    let mut told = Vec::new();
-    for entry in new.iter().filter(|entry| offer.lets_see(entry)) {
-        if let Some(kind) = kind(&entry.content) {
-            told.push(message(kind, &seen, entry, now));
+    let mut messages = Vec::new();
+    for entry in new.iter().filter(|entry| offer.shows(entry)) {
+        if let Some(kind) = entry.content.event().webhook() {
+            messages.push(entry_message(kind, &seen, entry, now));
         }
     }
-    if offer.is_taken_back(was)
+    if offer.is_withdrawn_since(offer_before)
         && let Some(last) = new.last()
     {
-        // Why is not the firm's business: another may have it.
+        // The reason is confidential: another firm may have it.
         let body = json!({ "seq": last.seq, "kind": "withdrawn", "at": last.at });
-        told.push(written(Kind::OrderWithdrawn, &seen, &body, now));
+        messages.push(message_with_entry(Kind::OrderWithdrawn, &seen, &body, now));
     }
-    told
+    messages
 }
 
-/// The same for the firm's people, in words.
+/// Returns the notifications for a firm's people.
 fn notices_for(
     summary: &Summary,
     offer: &Offer,
-    was: Option<OfferState>,
+    offer_before: Option<OfferState>,
     new: &[&Entry],
 ) -> Vec<Notice> {
     let seen = summary.seen_with(offer);
-    let theirs = new.iter().filter(|entry| offer.lets_see(entry));
-    let mut told: Vec<Notice> = theirs
-        .filter_map(|entry| notification_text::for_firm(&seen, entry, was))
+    let theirs = new.iter().filter(|entry| offer.shows(entry));
+    let mut notices: Vec<Notice> = theirs
+        .filter_map(|entry| notification_text::for_firm(&seen, entry, offer_before))
         .collect();
-    if offer.is_taken_back(was) {
-        told.extend(
-            new.last()
-                .map(|last| notification_text::withdrawn(&seen, last)),
-        );
+    if offer.is_withdrawn_since(offer_before) {
+        let last = new.last();
+        notices.extend(last.map(|last| notification_text::withdrawn(&seen, last)));
     }
-    told
+    notices
 }
 
 impl Offer {
-    /// Whether the firm may know of a new entry.
-    fn lets_see(&self, entry: &Entry) -> bool {
-        let holds = self.state == OfferState::Accepted;
-        let between = entry.content.between();
-        between.map_or(holds, |said| said.firm.firm_id == self.firm_id)
+    /// Returns whether the firm is informed of a new entry.
+    fn shows(&self, entry: &Entry) -> bool {
+        match entry.content.event().audience() {
+            Audience::Operator => false,
+            Audience::Firm(addressee) => addressee == self.firm_id,
+            Audience::Parties => self.state == OfferState::Accepted,
+        }
     }
 
-    fn is_taken_back(&self, was: Option<OfferState>) -> bool {
-        self.state == OfferState::Withdrawn && was.is_some_and(OfferState::is_seen)
+    fn is_withdrawn_since(&self, before: Option<OfferState>) -> bool {
+        self.state == OfferState::Withdrawn && before.is_some_and(OfferState::is_seen)
     }
 }
 
-/// Who wrote it; none for the server itself.
+/// Author of the last entry; `None` for the server itself.
 fn author(new: &[&Entry]) -> Option<UserId> {
     new.last().and_then(|entry| entry.author.id).map(UserId)
 }
 
-fn kind(content: &Content) -> Option<Kind> {
-    Some(match content {
-        Content::Offered(_) => return None,
-        Content::Asked(_) => Kind::OrderOffered,
-        Content::Accepted(_)
-        | Content::Declined(_)
-        | Content::Proposed(_)
-        | Content::ProposalAccepted(_)
-        | Content::ProposalDeclined(_)
-        | Content::RetimeAccepted(_)
-        | Content::RetimeDeclined(_) => Kind::OrderAnswered,
-        Content::Lapsed(_) | Content::RetimeLapsed(_) => Kind::OrderLapsed,
-        Content::RetimeProposed(_) => Kind::OrderRetimeProposed,
-        Content::CallMoved(_) => Kind::OrderCallMoved,
-        Content::Message(_) => Kind::OrderMessage,
-        Content::Completion(_) => Kind::OrderCompleted,
-        Content::Verification(verified) => match verified.verification {
-            Verification::Passed { .. } => Kind::OrderVerified,
-            Verification::MoreNeeded { .. } => Kind::OrderUpdated,
-            Verification::Alarm { .. } => Kind::OrderFailed,
-        },
-        Content::Closed(_) => Kind::OrderClosed,
-        Content::Cancelled(_) => Kind::OrderCancelled,
-        Content::Opened(_)
-        | Content::OnBoard(_)
-        | Content::BerthReading(_)
-        | Content::Plan(_)
-        | Content::Step(_)
-        | Content::SecondReading(_)
-        | Content::CorrectorSettings(_)
-        | Content::Photo(_)
-        | Content::Remark(_)
-        | Content::Signature(_) => Kind::OrderUpdated,
-    })
-}
-
-fn message(kind: Kind, summary: &Summary, entry: &Entry, now: Time) -> Message {
-    let said = entry.content.between();
-    let what = serde_json::to_value(&entry.content).ok();
-    let what = what.and_then(|value| value.get("kind").cloned());
-    let call = match &entry.content {
-        Content::CallMoved(moved) => Some(&moved.call),
-        _ => None,
-    };
+/// Returns the webhook message of an entry.
+fn entry_message(kind: Kind, summary: &Summary, entry: &Entry, now: Time) -> Message {
+    let event = entry.content.event();
+    let exchange = event.exchange();
+    let name = serde_json::to_value(&entry.content).ok();
+    let name = name.and_then(|value| value.get("kind").cloned());
     let entry = json!({
-        "seq": entry.seq, "kind": what, "at": entry.at, "by": entry.author.name,
-        "firm_id": said.map(|said| said.firm.firm_id),
-        "fee_eur": said.and_then(|said| said.fee_eur),
-        "terms": said.and_then(|said| said.terms.as_ref()),
-        "text": said.and_then(|said| said.text.as_ref()),
-        "call": call,
+        "seq": entry.seq, "kind": name, "at": entry.at, "by": entry.author.name,
+        "firm_id": exchange.map(|exchange| exchange.firm.firm_id),
+        "fee_eur": exchange.and_then(|exchange| exchange.fee_eur),
+        "terms": exchange.and_then(|exchange| exchange.terms.as_ref()),
+        "text": exchange.and_then(|exchange| exchange.text.as_ref()),
+        "call": event.call_change(),
     });
-    written(kind, summary, &entry, now)
+    message_with_entry(kind, summary, &entry, now)
 }
 
-/// A message as it is sent: the order in short, and what happened to it.
-fn written(kind: Kind, summary: &Summary, entry: &Value, now: Time) -> Message {
+/// Body of a message: the order in short, and the event.
+fn message_with_entry(kind: Kind, summary: &Summary, entry: &Value, now: Time) -> Message {
     let id = DeliveryId::new();
     let (state, answer_by): (State, Option<Time>) = (summary.state, summary.answer_by);
     let body = json!({

@@ -1,4 +1,4 @@
-//! Why there is no plan, or a reading is not taken, and what would cure it.
+//! Refusals of a reading or a plan, with their cures.
 
 pub use binnacle_adjustment::adjust::Cure;
 
@@ -9,23 +9,23 @@ use serde::{Deserialize, Serialize};
 use serde_json::Map;
 use utoipa::ToSchema;
 
-/// Why there is no plan, or a reading is not taken.
+/// Refusal of a reading or a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = AdjustmentRefusal)]
 pub struct Refusal {
-    /// In a word.
+    /// Kind of the refusal.
     #[schema(example = "inconsistent_berth")]
     pub refusal: String,
-    /// What is wrong.
+    /// Reason in words.
     pub words: String,
-    /// Mistakes each of which alone would explain it.
+    /// Mistakes, each of which alone would explain it.
     pub could_be: Vec<String>,
-    /// What would cure it, the easiest first.
+    /// Cures, the easiest first.
     pub cures: Vec<Cure>,
 }
 
 impl Refusal {
-    /// Returns what is wrong, and the mistakes that would explain it, as one sentence.
+    /// Returns the reason and the possible mistakes as one sentence.
     fn with_explanations(&self) -> String {
         match self.could_be.join(", or ").as_str() {
             "" => self.words.clone(),
@@ -33,10 +33,10 @@ impl Refusal {
         }
     }
 
-    /// The same, a doubt of the place before all else that could explain it.
-    pub(crate) fn doubted(mut self, doubt: Option<Refusal>) -> Refusal {
-        if let Some(doubt) = doubt {
-            self.could_be.insert(0, doubt.words);
+    /// Puts an implausible position before all other explanations.
+    pub(crate) fn with_cause(mut self, implausible_position: Option<Refusal>) -> Refusal {
+        if let Some(implausible_position) = implausible_position {
+            self.could_be.insert(0, implausible_position.words);
         }
         self
     }
@@ -48,7 +48,7 @@ impl From<&Refused> for Refusal {
         let word = word.and_then(|value| Some(value.get("refusal")?.as_str()?.to_owned()));
         Refusal {
             refusal: word.unwrap_or_else(|| "refused".to_owned()),
-            // What could explain it stands beside it.
+            // The explanations follow in their own field.
             words: refused.refusal.summary(),
             could_be: refused.refusal.explanations(),
             cures: refused.cures.clone(),
@@ -59,19 +59,19 @@ impl From<&Refused> for Refusal {
 /// Fields of the problem `not-adjustable`.
 #[derive(Serialize, ToSchema)]
 pub struct NotAdjustableFields {
-    /// What is wrong at the berth and what would cure it; only in `not-adjustable`.
+    /// Refusals with their cures; only in `not-adjustable`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false)]
     refusals: Option<Vec<Refusal>>,
 }
 
-/// Returns the problem `not-adjustable`: there is no plan, or a reading is not taken.
+/// Returns the problem `not-adjustable`: a plan or a reading is refused.
 pub(crate) fn not_adjustable(refusals: Vec<Refusal>) -> Error {
     let detail = refusals.iter().map(Refusal::with_explanations);
     let problem = DomainProblem {
         status: StatusCode::UNPROCESSABLE_ENTITY,
         kind: "not-adjustable",
-        title: "No plan as it stands",
+        title: "No plan is possible",
         detail: detail.collect::<Vec<_>>().join("; "),
         extra: Map::new(),
     };

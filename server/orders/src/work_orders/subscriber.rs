@@ -1,4 +1,4 @@
-//! Handlers of events that orders under way do not allow.
+//! Subscribers that refuse events which orders under way do not allow.
 
 use crate::work_orders::store;
 use binnacle_fleet::binnacles::BinnacleAmended;
@@ -29,7 +29,7 @@ pub fn refuse_leave_of_service<'a>(
     })
 }
 
-/// Refuses to write a binnacle whose correctors are being moved.
+/// Refuses a revision of a binnacle whose correctors are being moved.
 pub fn refuse_amended_binnacle<'a>(
     tx: &'a mut Tx,
     amended: &'a BinnacleAmended,
@@ -39,8 +39,8 @@ pub fn refuse_amended_binnacle<'a>(
             return Ok(());
         }
         Err(Error::WrongState(
-            "this compass is being adjusted: how its correctors stand is said to its work order, \
-             which writes the binnacle when it is completed or cancelled"
+            "this compass is being adjusted: report the settings of its correctors to its work \
+                order, which revises the binnacle when it is completed or cancelled"
                 .to_owned(),
         ))
     })

@@ -6,7 +6,7 @@
 
 use super::store::{CalendarCall, CalendarDueDate, CalendarOrder};
 use anyhow::Context;
-use binnacle_orders::dispatch::CallFit;
+use binnacle_orders::work_orders::CallFit;
 use binnacle_orders::work_orders::State;
 use binnacle_platform::time::Time;
 use binnacle_schedule::input::JOB_H;

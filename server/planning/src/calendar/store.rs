@@ -1,7 +1,7 @@
 //! Calendar feeds in the database, and the records that they show.
 
 use super::feed::{Feed, Scope};
-use binnacle_orders::dispatch::CallFit;
+use binnacle_orders::work_orders::CallFit;
 use binnacle_orders::work_orders::State;
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::ids::{

@@ -27,7 +27,7 @@ pub use subscriber::note_berth_heading;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_fleet::vessels;
-use binnacle_orders::dispatch::{calls_come, calls_move};
+use binnacle_orders::dispatch::{announce_call_updates, attach_new_calls};
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -153,7 +153,7 @@ async fn enter_port_call(
         let author = Author::of(&mut tx, writer.user, now).await?;
         store::insert(&mut tx, vessel, id, &call, Source::Api, &author).await?;
         let new = [(id, moves::alongside(&call))];
-        let pending = calls_come(&mut tx, vessel, &new, &author.name, now).await?;
+        let pending = attach_new_calls(&mut tx, vessel, &new, &author.name, now).await?;
         commit(&app, tx, &[vessel], pending, now).await?;
     }
     let call = find_call(&app, writer.operator, vessel, CallId(stored)).await?;
@@ -212,10 +212,11 @@ async fn amend_port_call(
     check_overlap(&known, Some(id), &amended)?;
     let author = Author::of(&mut tx, writer.user, now).await?;
     let moving = moves::amended(current, &amended)?;
-    let mut pending = calls_move(&mut tx, vessel, moving.as_slice(), &author.name, now).await?;
+    let mut pending =
+        announce_call_updates(&mut tx, vessel, moving.as_slice(), &author.name, now).await?;
     store::revise(&mut tx, current, &amended, Source::Api, &author).await?;
     let new = [(id, moves::alongside(&amended))];
-    pending.extend(calls_come(&mut tx, vessel, &new, &author.name, now).await?);
+    pending.extend(attach_new_calls(&mut tx, vessel, &new, &author.name, now).await?);
     commit(&app, tx, &[vessel], pending, now).await?;
     Ok(Json(find_call(&app, writer.operator, vessel, id).await?))
 }
@@ -244,7 +245,7 @@ async fn withdraw_port_call(
     if current.withdrawn_at.is_none() {
         let author = Author::of(&mut tx, writer.user, now).await?;
         let moving = [moves::withdrawn(current)?];
-        let pending = calls_move(&mut tx, vessel, &moving, &author.name, now).await?;
+        let pending = announce_call_updates(&mut tx, vessel, &moving, &author.name, now).await?;
         store::withdraw(&mut tx, current, reason.as_deref(), &author).await?;
         commit(&app, tx, &[vessel], pending, now).await?;
     } else {

@@ -3,7 +3,8 @@
 use super::call::Content;
 use super::store::StoredCall;
 use super::uploaded_file::FileChanges;
-use binnacle_orders::dispatch::{Alongside, Moving};
+use binnacle_orders::dispatch::CallUpdate;
+use binnacle_orders::work_orders::Alongside;
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::CallId;
 use std::collections::BTreeMap;
@@ -12,12 +13,12 @@ use std::collections::BTreeMap;
 const MAX_SHIFT_H: f64 = 21.0 * 24.0;
 
 /// Returns the move of an amended call; `None` when port and times stay.
-pub(super) fn amended(row: &StoredCall, call: &Content) -> Result<Option<Moving>> {
+pub(super) fn amended(row: &StoredCall, call: &Content) -> Result<Option<CallUpdate>> {
     let (before, after) = (row.alongside()?, alongside(call));
     if before == after && row.withdrawn_at.is_none() {
         return Ok(None);
     }
-    Ok(Some(Moving {
+    Ok(Some(CallUpdate {
         call_id: row.id,
         then_id: row.id,
         was: before,
@@ -26,8 +27,8 @@ pub(super) fn amended(row: &StoredCall, call: &Content) -> Result<Option<Moving>
 }
 
 /// Returns the move of a withdrawn call.
-pub(super) fn withdrawn(row: &StoredCall) -> Result<Moving> {
-    Ok(Moving {
+pub(super) fn withdrawn(row: &StoredCall) -> Result<CallUpdate> {
+    Ok(CallUpdate {
         call_id: row.id,
         then_id: row.id,
         was: row.alongside()?,
@@ -39,7 +40,7 @@ pub(super) fn withdrawn(row: &StoredCall) -> Result<Moving> {
 pub(super) fn of_file(
     changes: &FileChanges<'_>,
     new: &[(CallId, &Content)],
-) -> Result<Vec<Moving>> {
+) -> Result<Vec<CallUpdate>> {
     let mut all = Vec::new();
     for (row, call) in &changes.amended {
         all.extend(amended(row, call)?);
@@ -60,7 +61,7 @@ pub(super) fn of_file(
         let moving = withdrawn(row)?;
         let port = at_port.get_mut(&row.port);
         all.push(match port.and_then(|port| port.successor(row)) {
-            Some((then_id, call)) => Moving {
+            Some((then_id, call)) => CallUpdate {
                 then_id: *then_id,
                 is: Some(alongside(call)),
                 ..moving

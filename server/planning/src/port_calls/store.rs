@@ -3,7 +3,7 @@
 use super::call::{CheckedFilter, Content, PortCall, Revision, Source};
 use super::heading::{EarlierHeadings, heading_alongside};
 use anyhow::Context;
-use binnacle_orders::dispatch::Alongside;
+use binnacle_orders::work_orders::Alongside;
 use binnacle_platform::db::{Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{CallId, OperatorId, UserId, VesselId};

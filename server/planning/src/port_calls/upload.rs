@@ -11,7 +11,7 @@ use axum::body::Body;
 use axum::extract::{FromRef, State};
 use axum::response::Response;
 use binnacle_fleet::vessels;
-use binnacle_orders::dispatch::{calls_come, calls_move};
+use binnacle_orders::dispatch::{announce_call_updates, attach_new_calls};
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -265,7 +265,7 @@ async fn store_file(
         for (id, call) in &new {
             store::insert(&mut tx, vessel, *id, call, source, &author).await?;
         }
-        pending.extend(calls_move(&mut tx, vessel, &moving, &author.name, now).await?);
+        pending.extend(announce_call_updates(&mut tx, vessel, &moving, &author.name, now).await?);
         for (row, call) in amended {
             store::revise(&mut tx, row, call, source, &author).await?;
         }
@@ -277,7 +277,7 @@ async fn store_file(
         let current: Vec<_> = current
             .map(|(id, call)| (id, moves::alongside(call)))
             .collect();
-        pending.extend(calls_come(&mut tx, vessel, &current, &author.name, now).await?);
+        pending.extend(attach_new_calls(&mut tx, vessel, &current, &author.name, now).await?);
     }
     errors.into_result(()).map_err(refuse_file)?;
     commit(app, tx, &changed, pending, now).await?;

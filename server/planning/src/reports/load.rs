@@ -6,7 +6,7 @@ use crate::needs::{Facts, find_need, load_facts};
 use crate::schedule_settings;
 use binnacle_compass::time::Timestamp;
 use binnacle_fleet::models::{self, StoredModel};
-use binnacle_orders::completion::{self, Done, Span};
+use binnacle_orders::completion::{self, CompletedOrder, CompletionPeriod};
 use binnacle_orders::firms;
 use binnacle_orders::work_orders::State;
 use binnacle_platform::app::App;
@@ -36,7 +36,7 @@ pub(super) async fn load_report(
     let models = models::current_of_fleet(&app.db, operator, all.0, all.1).await?;
     let terms = schedule_settings::terms(&app.db, operator).await?;
     let under_way = list_orders_under_way(&app.db, operator).await?;
-    let span = Span {
+    let span = CompletionPeriod {
         from: start_of_day("from", from)?,
         until: start_of_day("to", to + Days::new(1))?,
         late_since,
@@ -143,8 +143,8 @@ fn worst_deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviati
     all
 }
 
-async fn list_jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
-    let done = completion::done(db, operator, span).await?;
+async fn list_jobs(db: &Db, operator: OperatorId, span: CompletionPeriod) -> Result<Vec<Job>> {
+    let done = completion::completed_orders(db, operator, span).await?;
     let terms = firms::of_operator(db, operator).await?;
     let visits = number_visits(&done);
     let usual = |nth: usize| {
@@ -165,7 +165,7 @@ async fn list_jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>
         agreed.or_else(|| usual(nth).map(|eur| (eur, FeeFrom::Terms)))
     };
     let fees: Vec<Option<(f64, FeeFrom)>> = (0..done.len()).map(fee).collect();
-    let job = |((done, visit), fee): ((Done, usize), Option<(f64, FeeFrom)>)| Job {
+    let job = |((done, visit), fee): ((CompletedOrder, usize), Option<(f64, FeeFrom)>)| Job {
         order_id: done.order_id,
         vessel_id: done.vessel_id,
         vessel_name: done.vessel_name,
@@ -185,7 +185,7 @@ async fn list_jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>
 
 /// Returns the number of each job's visit, in the jobs' order. A visit is a vessel's jobs in one
 /// port, each within a day of the previous one.
-fn number_visits(done: &[Done]) -> Vec<usize> {
+fn number_visits(done: &[CompletedOrder]) -> Vec<usize> {
     let mut last: BTreeMap<VesselId, usize> = BTreeMap::new();
     let mut visits: Vec<usize> = Vec::with_capacity(done.len());
     for (nth, job) in done.iter().enumerate() {

@@ -9,9 +9,9 @@ use super::store;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_orders::api;
-use binnacle_orders::dispatch::{self, NewOffer};
+use binnacle_orders::dispatch;
 use binnacle_orders::firms::{self, Terms};
-use binnacle_orders::work_orders::{self, NewOrder};
+use binnacle_orders::work_orders::{self, NewOffer, NewOrder};
 use binnacle_platform::access::Writer;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -106,7 +106,7 @@ async fn offer_job(
     }
     let (mut orders, mut pending) = (Vec::new(), Vec::new());
     for order in &job.instead_of {
-        let (open, events) = api::give_way(&app, tx, writer, job.vessel_id, *order).await?;
+        let (open, events) = api::cancel_declined(&app, tx, writer, job.vessel_id, *order).await?;
         tx = open;
         pending.extend(events);
     }

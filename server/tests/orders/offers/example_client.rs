@@ -169,7 +169,7 @@ async fn the_example_client_completes_an_order(server: TestServer) {
         "no signature covers it: rosa had registered it as \"Office\"",
         "no signature covers it: no firm had registered it",
         // The list of the firms that get the offer.
-        "entries 2 are withheld: what they say cannot be looked into",
+        "entries 2 are withheld: their content cannot be checked",
     ] {
         assert!(facts.contains(fact), "{fact}: {facts}");
     }

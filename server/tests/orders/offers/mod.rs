@@ -165,7 +165,7 @@ async fn a_past_job_is_offered_to_nobody(server: TestServer) {
     assert_eq!(order["state"], "declined");
     assert_eq!(
         order["offers"][1]["text"],
-        "not asked: the time of the job is over"
+        "not asked: the time of the job is past"
     );
     let refused = parties.post(juan, "/accept", &json!({})).await;
     assert!(refused.status >= 400, "{refused:?}");
@@ -173,7 +173,7 @@ async fn a_past_job_is_offered_to_nobody(server: TestServer) {
     let late = parties.post(&parties.ada, "/offer", &parties.offer()).await;
     assert_eq!(late.problem(), "wrong-state");
     assert!(
-        late.text.contains("2026-11-21 09:00 UTC, which is over"),
+        late.text.contains("2026-11-21 09:00 UTC, which is past"),
         "{late:?}"
     );
     server.finish().await;
@@ -200,7 +200,7 @@ async fn a_firm_with_a_longer_lead_time_is_skipped(server: TestServer) {
     assert_eq!(lapse(&server.app).await.unwrap(), 1);
     assert_eq!(parties.offers().await, ["lapsed", "lapsed", "open"]);
     let passed = &parties.view_order().await["offers"][1];
-    assert_eq!(passed["text"], "not asked: it wants to be asked 24 h ahead");
+    assert_eq!(passed["text"], "not asked: it requires 24 h notice");
     server.finish().await;
 }
 

@@ -1,7 +1,7 @@
 //! Evidence of an order: the log, the photographs, the archive.
 
 use binnacle_orders::evidence;
-use binnacle_orders::work_orders::log_entry::sha256_hex;
+use binnacle_orders::work_orders::sha256_hex;
 use binnacle_server_testing::TestServer;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::work_orders::Job;
@@ -74,7 +74,7 @@ async fn the_record_is_available_in_each_form(server: TestServer) {
                 // Each sheet has the notice.
                 let sheets = text.matches("<g transform").count();
                 assert!(sheets > 0, "{text}");
-                let says = text.matches("A prediction, and no certificate.").count();
+                let says = text.matches("A prediction, not a certificate.").count();
                 assert_eq!(says, sheets);
             }
         }
@@ -91,7 +91,7 @@ async fn only_an_image_is_accepted_as_a_photograph(server: TestServer) {
     );
     let cut_off = job.post_photo(b"\x89PNG\r\n\x1a\n").await;
     assert_eq!(cut_off.problem(), "unsupported-media-type");
-    assert!(cut_off.text.contains("cut off"), "{cut_off:?}");
+    assert!(cut_off.text.contains("truncated"), "{cut_off:?}");
     job.post_photo(PICTURE).await.good();
     let order = job.view_order().await;
     assert_eq!(order["photos"].as_array().unwrap().len(), 1);
@@ -188,7 +188,7 @@ fn check_forgeries(files: &BTreeMap<String, Vec<u8>>) {
         let mut forged = files.clone();
         forge(&mut forged, name, b"CERTIFICATE".to_vec());
         let problems = evidence::verify(&pack(&forged)).problems;
-        assert_eq!(problems, [format!("{name} is no part of this evidence")]);
+        assert_eq!(problems, [format!("{name} is not part of this evidence")]);
     }
     // a removed log line by its chain, and a removed end by the head.
     let log = String::from_utf8(files["entries.ndjson"].clone()).unwrap();

@@ -175,13 +175,13 @@ async fn a_reading_is_checked_against_the_port_and_the_track(server: TestServer)
     let old = with(json!({ "at": "2026-11-14T06:30:00Z" }));
     let response = job.post("/berth-reading", &old).await;
     assert_eq!(response.problem(), "invalid");
-    assert!(response.text.contains("hours back"), "{response:?}");
+    assert!(response.text.contains("hours old"), "{response:?}");
     // East for west, and a time at which the ship was at sea by its track.
     for (body, words) in [
         (with(json!({ "lon": 3.04 })), "nautical miles from Bilbao"),
         (
             with(json!({ "at": "2026-11-19T22:00:00Z" })),
-            "from where her track has her",
+            "from the vessel's track",
         ),
     ] {
         let response = job.post("/berth-reading", &body).await;
@@ -204,7 +204,10 @@ async fn correctors_can_be_restored_and_the_berth_read_again(server: TestServer)
     job.post(&path, &after).await.good();
     let refused = job.post("/berth-reading", &reading()).await;
     assert_eq!(refused.problem(), "wrong-state");
-    assert!(refused.text.contains("put them back"), "{refused:?}");
+    assert!(
+        refused.text.contains("put the correctors back"),
+        "{refused:?}"
+    );
     let stand = json!({ "setting": before });
     job.post("/corrector-settings", &stand).await.good();
     let order = job.post("/berth-reading", &reading()).await.good();

@@ -60,7 +60,7 @@ async fn a_binnacle_changed_meanwhile_is_detected(server: TestServer) {
     put(&job.person, &path, &more).await.good();
     let held = job.post("/plan", &json!({})).await;
     assert_eq!(held.problem(), "wrong-state");
-    assert!(held.text.contains("written anew"), "{held:?}");
+    assert!(held.text.contains("was revised"), "{held:?}");
     job.post("/berth-reading", &reading()).await.good();
     job.post("/plan", &json!({})).await.good();
     let refused = put(&job.person, &path, &binnacle()).await;

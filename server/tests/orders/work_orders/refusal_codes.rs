@@ -190,7 +190,7 @@ async fn a_reading_from_before_a_change_must_be_repeated(server: TestServer) {
     server.work().await;
     let refused = job.post("/plan", &json!({})).await;
     assert_eq!(refused.problem(), "wrong-state");
-    assert!(refused.text.contains("read it again"), "{refused:?}");
+    assert!(refused.text.contains("read the berth again"), "{refused:?}");
     // Neither does an old reading, when the ship may have lain elsewhere.
     let other = Job::for_person(&server, server.admin("eve").await).await;
     other.post("/berth-reading", &reading()).await.good();

@@ -129,7 +129,7 @@ async fn a_disagreeing_heading_at_sea_raises_an_alert(server: TestServer) {
     let path = "/notifications?kind=verification_failed";
     let notifications = job.person.get(path).await.good();
     let text = notifications["items"][0]["text"].as_str().unwrap();
-    assert!(text.contains("off what was foretold"), "{text}");
+    assert!(text.contains("off the prediction"), "{text}");
     // The compass is due for another adjustment.
     let needs = job.person.get("/needs").await.good();
     let mut causes = needs["items"][0]["causes"].as_array().unwrap().iter();

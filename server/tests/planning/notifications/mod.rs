@@ -95,7 +95,7 @@ async fn an_offer_and_its_responses_notify_the_other_side(server: TestServer) {
     parties.post(juan, "/on-board", &json!({})).await.good();
     assert_eq!(
         subjects_of(juan).await,
-        [offered, "Nao: your terms are agreed to at Bilbao"]
+        [offered, "Nao: your terms are accepted at Bilbao"]
     );
     let all = subjects_of(&parties.ada).await;
     assert_eq!(
@@ -145,7 +145,7 @@ async fn a_person_is_not_notified_of_their_own_action(server: TestServer) {
     let theirs = subjects_of(rosa).await;
     let expected = [
         "Nao: a job is offered to you at Bilbao",
-        "Nao: the operator writes at Bilbao",
+        "Nao: message from the operator at Bilbao",
     ];
     assert_eq!(theirs, expected);
     server.finish().await;

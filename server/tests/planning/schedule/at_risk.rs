@@ -92,7 +92,7 @@ async fn an_agreed_job_is_at_risk_when_its_firm_has_no_teams(server: TestServer)
     assert_eq!(raised.len(), 1, "{raised:?}");
     let summary = raised[0]["summary"].as_str().unwrap();
     assert!(
-        summary.contains("a firm without teams does nothing"),
+        summary.contains("a firm without teams does no jobs"),
         "{summary}"
     );
     put(&agreed.ada, &path, &terms()).await.good();

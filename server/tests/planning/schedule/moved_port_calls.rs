@@ -160,7 +160,7 @@ async fn the_old_day_stands_until_a_new_one_is_agreed(server: TestServer) {
     let new = &requested["offers"][0]["new_terms"]["planned_at"];
     assert_eq!(new, "2026-12-17T08:00:00Z");
     let last = subjects_of(&agreed.rosa).await.pop().unwrap();
-    assert!(last.contains("another time is asked of you"), "{last}");
+    assert!(last.contains("another time is proposed to you"), "{last}");
     let refused = agreed.respond(&agreed.rosa, "decline").await.good();
     assert_eq!(refused["planned_at"], "2026-12-15T07:00:00Z");
     assert_eq!(refused["state"], "accepted");
@@ -218,7 +218,7 @@ async fn a_new_day_is_within_the_port_call_and_the_firms_capacity(server: TestSe
         .await;
     for (at, texts) in [
         ("2026-12-15T08:00:00Z", "no call at NLRTM"),
-        ("2026-12-18T16:00:00Z", "lasts for three hours"),
+        ("2026-12-18T16:00:00Z", "lasts three hours"),
         (&format!("{taken}T12:00:00Z"), "no team left"),
     ] {
         let refused = agreed.retime(at).await;

@@ -303,7 +303,7 @@ async fn a_firm_not_authorised_for_the_vessel_gets_no_order(server: TestServer) 
     assert!(
         refused
             .text
-            .contains("does not hold the licence that she asks for, NO-7"),
+            .contains("does not hold the licence that the vessel requires, NO-7"),
         "{refused:?}"
     );
     some["licences"] = json!(["NO-7"]);
@@ -322,8 +322,8 @@ async fn an_order_at_a_port_with_known_port_calls_needs_one_of_them(server: Test
         .post("/work-orders", &order("2026-12-18T08:00:00Z"))
         .await;
     assert_eq!(other.problem(), "invalid");
-    let message = "she is at Rotterdam (NLRTM) from 2026-12-14 06:00 UTC";
-    assert!(other.text.contains(message), "{other:?}");
+    let said = "the vessel is at Rotterdam (NLRTM) from 2026-12-14 06:00 UTC";
+    assert!(other.text.contains(said), "{other:?}");
     let made = ada
         .post("/work-orders", &order("2026-12-15T08:00:00Z"))
         .await

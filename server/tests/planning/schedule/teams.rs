@@ -238,7 +238,7 @@ async fn an_order_needs_a_valid_port_and_time(server: TestServer) {
     assert!(
         elsewhere
             .text
-            .contains("she is at Rotterdam (NLRTM) then, not at Bilbao (ESBIO)"),
+            .contains("the vessel is at Rotterdam (NLRTM) then, not at Bilbao (ESBIO)"),
         "{elsewhere:?}"
     );
     for at in [

@@ -59,7 +59,7 @@ async fn a_port_call_entered_again_has_its_agreed_job_again(server: TestServer) 
     let last = messages(&agreed.rosa, &agreed.order).await.pop().unwrap();
     let last = last["text"].as_str().unwrap();
     assert!(
-        last.contains("The port call at NLRTM is there again"),
+        last.contains("The port call at NLRTM is planned again"),
         "{last}"
     );
     assert!(last.ends_with("still lies in it."), "{last}");

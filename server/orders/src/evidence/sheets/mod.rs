@@ -1,56 +1,57 @@
-//! The record for people, on paper: drawn from the record's own text and nothing else.
+//! Printed record, drawn from the record's own text alone.
 //!
-//! What always holds: it says on each sheet that it is a prediction and no certificate, of
-//! which order it is, and the SHA-256 of the record that it is drawn from.
+//! What always holds: each sheet states that it is a prediction and not a certificate, the order,
+//! and the SHA-256 of its record.
 
 mod tables;
+mod values;
 
-use crate::work_orders::log_entry::sha256_hex;
+use crate::work_orders::log::canonical_json::sha256_hex;
 use anyhow::Context;
 use binnacle_compass::time::Timestamp;
 use binnacle_drawing::angles::{east_west, heading_to_a_tenth, latitude, longitude};
 use binnacle_drawing::paper::{LEFT, Paper, RIGHT};
 use binnacle_drawing::{About, Sheet, Style, pdf, svg};
-use binnacle_platform::time::Time;
 use serde_json::Value;
+use values::{minute, number, word};
 
-/// The record as PDF.
+/// Draws the record as PDF.
 ///
 /// # Errors
-/// When the text is no record of ours.
+/// When the text is not an adjustment record.
 pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
-    let (sheets, about) = drawn(text)?;
+    let (sheets, about) = draw(text)?;
     pdf(&sheets, &about)
 }
 
-/// The record as a picture, its sheets one below the other.
+/// Draws the record as a picture, its sheets one below the other.
 ///
 /// # Errors
-/// When the text is no record of ours.
+/// When the text is not an adjustment record.
 pub fn record_svg(text: &str) -> anyhow::Result<String> {
-    let (sheets, about) = drawn(text)?;
+    let (sheets, about) = draw(text)?;
     Ok(svg(&sheets, &about.title))
 }
 
-fn drawn(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
+fn draw(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
     let record: Value = serde_json::from_str(text)?;
     let at = record["adjusted_at"].as_str().context("adjusted_at")?;
     let mut paper = Paper::new();
-    head(&mut paper, &record);
-    rests_on(&mut paper, &record);
-    tables::correctors(&mut paper, &record)?;
-    plan(&mut paper, &record);
-    tables::steps(&mut paper, &record);
-    tables::settings_said(&mut paper, &record)?;
-    tables::second_readings(&mut paper, &record);
-    tables::predicted(&mut paper, &record);
-    tables::parameters(&mut paper, &record);
-    photos(&mut paper, &record);
-    signed(&mut paper, &record);
+    draw_head(&mut paper, &record);
+    draw_basis(&mut paper, &record);
+    tables::draw_correctors(&mut paper, &record)?;
+    draw_plan(&mut paper, &record);
+    tables::draw_steps(&mut paper, &record);
+    tables::draw_reported_settings(&mut paper, &record)?;
+    tables::draw_second_readings(&mut paper, &record);
+    tables::draw_predicted(&mut paper, &record);
+    tables::draw_parameters(&mut paper, &record);
+    draw_photos(&mut paper, &record);
+    draw_signatures(&mut paper, &record);
     let foot = [
         format!(
-            "A prediction, and no certificate. Work order {}; what headings at sea said since \
-             stands in its log.",
+            "A prediction, not a certificate. Work order {}; its log has the later verification \
+                at sea.",
             word(&record["order"])
         ),
         format!("SHA-256 of record.json: {}", sha256_hex(text.as_bytes())),
@@ -62,10 +63,10 @@ fn drawn(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
     Ok((paper.finish(&foot), about))
 }
 
-/// The residuals that the record foretells, a row to a place and heading.
+/// Lists the predicted residuals of a record, one row for each place and heading.
 ///
 /// # Errors
-/// When the text is no record of ours.
+/// When the text is not an adjustment record.
 pub fn predicted_csv(text: &str) -> anyhow::Result<String> {
     let record: Value = serde_json::from_str(text)?;
     let tables = record["predicted_after"].as_array();
@@ -86,34 +87,16 @@ pub fn predicted_csv(text: &str) -> anyhow::Result<String> {
     Ok(lines.join("\n"))
 }
 
-fn word(value: &Value) -> String {
-    match value {
-        Value::String(text) => text.clone(),
-        Value::Null => String::new(),
-        other => other.to_string(),
-    }
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_default()
-}
-
-/// A time for people; as it stands where it is none.
-fn minute(value: &Value) -> String {
-    let text = word(value);
-    Timestamp::parse(&text).map_or(text, |time| Time(time).to_the_minute())
-}
-
-fn joined(parts: &[String]) -> String {
+fn join_nonempty(parts: &[String]) -> String {
     let given: Vec<&str> = parts.iter().map(String::as_str).collect();
     let given: Vec<&str> = given.into_iter().filter(|part| !part.is_empty()).collect();
     given.join(", ")
 }
 
-fn head(paper: &mut Paper, record: &Value) {
+fn draw_head(paper: &mut Paper, record: &Value) {
     paper.put(LEFT, Style::bold(18.0), "Adjustment record");
-    let says = "PREDICTED – NOT A CERTIFICATE";
-    paper.put(RIGHT, Style::bold(11.0).end(), says);
+    let text = "PREDICTED – NOT A CERTIFICATE";
+    paper.put(RIGHT, Style::bold(11.0).end(), text);
     paper.down(20.0);
     let (vessel, compass) = (&record["vessel"], &record["compass"]);
     let numbered = |label: &str, value: &Value| match word(value).as_str() {
@@ -125,11 +108,11 @@ fn head(paper: &mut Paper, record: &Value) {
         ("IMO number", word(&vessel["imo_number"])),
         (
             "Call sign, flag",
-            joined(&[word(&vessel["call_sign"]), word(&vessel["flag"])]),
+            join_nonempty(&[word(&vessel["call_sign"]), word(&vessel["flag"])]),
         ),
         (
             "Compass",
-            joined(&[
+            join_nonempty(&[
                 word(&compass["name"]),
                 word(&compass["make"]),
                 numbered("no.", &compass["serial_number"]),
@@ -137,7 +120,7 @@ fn head(paper: &mut Paper, record: &Value) {
         ),
         (
             "Port, berth",
-            joined(&[word(&record["port"]), word(&record["berth"])]),
+            join_nonempty(&[word(&record["port"]), word(&record["berth"])]),
         ),
         ("Adjusted at", minute(&record["adjusted_at"])),
         ("Work order", word(&record["order"])),
@@ -146,10 +129,10 @@ fn head(paper: &mut Paper, record: &Value) {
     }
 }
 
-fn rests_on(paper: &mut Paper, record: &Value) {
+fn draw_basis(paper: &mut Paper, record: &Value) {
     let (read, check) = (&record["reading"], &record["berth_check"]);
     let (earth, data) = (&record["earth_at_berth"], &record["data"]);
-    paper.title("What it rests on");
+    paper.title("Basis");
     paper.fact(
         "Model",
         &format!(
@@ -187,7 +170,7 @@ fn rests_on(paper: &mut Paper, record: &Value) {
     paper.fact("Magnetometer", &magnetometer(read));
     paper.fact(
         "Read",
-        &joined(&[
+        &join_nonempty(&[
             minute(&read["at"]),
             if read["steel_nearby"] == true {
                 "steel nearby".to_owned()
@@ -204,7 +187,7 @@ fn rests_on(paper: &mut Paper, record: &Value) {
     paper.fact(
         "Shielding factor",
         &format!(
-            "{:.3} ± {:.3}; the field points {:.1}° from where the model has it: {}",
+            "{:.3} ± {:.3}; the field points {:.1}° off the model: {}",
             number(&check["lambda"]),
             number(&check["lambda_sd"]),
             number(&check["consistency_deg"]).abs(),
@@ -230,7 +213,7 @@ fn magnetometer(read: &Value) -> String {
         "µT" => String::new(),
         other => format!("read in {other}"),
     };
-    joined(&[
+    join_nonempty(&[
         word(&read["magnetometer"]),
         word(&read["magnetometer_serial"]),
         part("forward", "forward"),
@@ -240,14 +223,14 @@ fn magnetometer(read: &Value) -> String {
     ])
 }
 
-fn plan(paper: &mut Paper, record: &Value) {
+fn draw_plan(paper: &mut Paper, record: &Value) {
     let (plan, limits) = (&record["plan"], &record["limits"]);
     paper.title("The plan");
     paper.fact(
         "Followed",
         &format!(
             "{}; worst residual {:.1}°, weighted over the waters; widest band ±{:.1}°",
-            steps_done(record),
+            step_counts(record),
             number(&plan["worst_residual_deg"]),
             number(&plan["widest_band_deg"])
         ),
@@ -255,7 +238,7 @@ fn plan(paper: &mut Paper, record: &Value) {
     let optimality = &plan["optimality"];
     if optimality.is_object() {
         let proven = if optimality["proven"] == true {
-            "proven: no setting of what is on board is better"
+            "proven: no setting of the correctors on board is better"
         } else {
             "not proven: another setting may be better"
         };
@@ -295,22 +278,21 @@ fn plan(paper: &mut Paper, record: &Value) {
     }
 }
 
-/// How many steps there were, those before a new plan with the rest, and how many of them
-/// moved something.
-fn steps_done(record: &Value) -> String {
+/// Numbers of steps, including those before a new plan, and of steps that moved correctors.
+fn step_counts(record: &Value) -> String {
     let steps = record["steps_as_read"].as_array().into_iter().flatten();
     let (moved, read): (Vec<&Value>, Vec<&Value>) = steps.partition(|step| step["moved"] == true);
-    let said = |steps: usize| match steps {
+    let count = |steps: usize| match steps {
         1 => "1 step".to_owned(),
         steps => format!("{steps} steps"),
     };
     match (moved.len(), read.len()) {
-        (moved, 0) => said(moved),
-        (moved, read) => format!("{}, {moved} of which moved correctors", said(moved + read)),
+        (moved, 0) => count(moved),
+        (moved, read) => format!("{}, {moved} of which moved correctors", count(moved + read)),
     }
 }
 
-fn photos(paper: &mut Paper, record: &Value) {
+fn draw_photos(paper: &mut Paper, record: &Value) {
     let photos = record["photos"].as_array();
     let photos = photos.filter(|photos| !photos.is_empty());
     let Some(photos) = photos else {
@@ -319,15 +301,15 @@ fn photos(paper: &mut Paper, record: &Value) {
     paper.title("Photographs");
     for (index, photo) in photos.iter().enumerate() {
         let caption = match word(&photo["caption"]) {
-            none if none.is_empty() => "without words".to_owned(),
+            none if none.is_empty() => "without caption".to_owned(),
             words => words,
         };
-        let says = format!("{caption}; SHA-256 {}", word(&photo["sha256"]));
-        paper.fact(&format!("{}", index + 1), &says);
+        let text = format!("{caption}; SHA-256 {}", word(&photo["sha256"]));
+        paper.fact(&format!("{}", index + 1), &text);
     }
 }
 
-fn signed(paper: &mut Paper, record: &Value) {
+fn draw_signatures(paper: &mut Paper, record: &Value) {
     let adjuster = &record["adjuster"];
     paper.keep_together(8);
     paper.title("Signed");

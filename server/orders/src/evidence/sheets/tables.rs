@@ -1,7 +1,7 @@
-//! What of the record stands beside each other: correctors before and after, steps,
-//! deviations foretold, the model's parameters.
+//! Tables of the printed record: correctors before and after, steps, predicted deviations, and
+//! the model's parameters.
 
-use super::{minute, number, word};
+use super::values::{minute, number, word};
 use binnacle_adjustment::binnacle::{Binnacle, Setting, Shape};
 use binnacle_drawing::angles::{east_west, heading, heading_to_a_tenth, signed};
 use binnacle_drawing::paper::{LEFT, Paper, SIZE, VALUE};
@@ -9,13 +9,13 @@ use binnacle_drawing::{Style, cut};
 use binnacle_fleet::binnacles::describe_setting;
 use serde_json::Value;
 
-/// Where a figure of a table ends, from one to the next.
+/// Width of a column of figures.
 const COLUMN: f32 = 84.0;
-/// So many places stand beside each other.
+/// Most places in one table.
 const PLACES: usize = 5;
 
-/// How each stood, and stands.
-pub(super) fn correctors(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
+/// Corrector settings before and after.
+pub(super) fn draw_correctors(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
     let setting = |name: &str| serde_json::from_value::<Setting>(record[name].clone());
     let (before, after) = (setting("setting_before")?, setting("setting_after")?);
     let binnacle: Binnacle = serde_json::from_value(record["binnacle_after"].clone())?;
@@ -37,7 +37,7 @@ pub(super) fn correctors(paper: &mut Paper, record: &Value) -> anyhow::Result<()
     Ok(())
 }
 
-/// Of the quadrantal correctors that stand in one of these settings.
+/// Shape of the quadrantal correctors in one of these settings.
 fn shape_of(binnacle: &Binnacle, settings: [&Setting; 2]) -> Option<Shape> {
     let of = |setting: &Setting| -> Option<Shape> {
         let pair = setting.quadrantal.as_ref()?;
@@ -47,17 +47,17 @@ fn shape_of(binnacle: &Binnacle, settings: [&Setting; 2]) -> Option<Shape> {
     settings.into_iter().find_map(of)
 }
 
-/// What somebody said of how the correctors stand, beside the steps.
-pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
+/// Reported corrector settings, beside the steps.
+pub(super) fn draw_reported_settings(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
     let binnacle: Binnacle = serde_json::from_value(record["binnacle_after"].clone())?;
-    let said = record["settings_as_said"].as_array().into_iter().flatten();
-    for (index, said) in said.enumerate() {
+    let reports = record["settings_as_said"].as_array().into_iter().flatten();
+    for (index, report) in reports.enumerate() {
         paper.keep_together(3);
         if index == 0 {
-            paper.title("Correctors, as they were said to stand");
+            paper.title("Correctors, as reported");
         }
-        let before: Setting = serde_json::from_value(said["before"].clone())?;
-        let after: Setting = serde_json::from_value(said["after"].clone())?;
+        let before: Setting = serde_json::from_value(report["before"].clone())?;
+        let after: Setting = serde_json::from_value(report["after"].clone())?;
         let shape = shape_of(&binnacle, [&after, &before]);
         let lines = describe_setting(&before, shape).into_iter();
         let moved: Vec<String> = lines
@@ -66,51 +66,51 @@ pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result
             .map(|((label, before), (_, after))| format!("{label}: {after} (before: {before})"))
             .collect();
         let stands = if moved.is_empty() {
-            "as they were taken to".to_owned()
+            "as assumed".to_owned()
         } else {
             moved.join("; ")
         };
-        let note = match word(&said["note"]) {
+        let note = match word(&report["note"]) {
             none if none.is_empty() => String::new(),
             note => format!(" “{note}”"),
         };
-        let says = format!("received {}: {stands}{note}", minute(&said["at"]));
-        paper.lines(LEFT, Style::plain(SIZE), &says);
+        let text = format!("received {}: {stands}{note}", minute(&report["at"]));
+        paper.lines(LEFT, Style::plain(SIZE), &text);
     }
     Ok(())
 }
 
-/// What was done, and what the compass showed of it.
-pub(super) fn steps(paper: &mut Paper, record: &Value) {
+/// Steps, with the compass readings.
+pub(super) fn draw_steps(paper: &mut Paper, record: &Value) {
     let steps = record["steps_as_read"].as_array();
-    paper.title("Steps, as the compass showed them");
+    paper.title("Steps, as shown by the compass");
     if steps.is_none_or(Vec::is_empty) {
         paper.lines(LEFT, Style::plain(SIZE), "None: nothing had to be moved.");
     }
-    // A new plan counts its steps from one again; on paper they are counted through.
+    // Each plan numbers its steps from one; the sheet numbers them continuously.
     for (index, step) in steps.into_iter().flatten().enumerate() {
-        let said = &step["said"];
-        let turned =
-            (number(&said["after_deg"]) - number(&said["before_deg"]) + 540.0).rem_euclid(360.0);
+        let result = &step["said"];
+        let turned = (number(&result["after_deg"]) - number(&result["before_deg"]) + 540.0)
+            .rem_euclid(360.0);
         paper.keep_together(3);
         let words = format!("{}. {}", index + 1, word(&step["words"]));
         paper.lines(LEFT, Style::plain(SIZE), &words);
         let showed = format!(
             "received {}: compass {} to {}, turned {}, expected {} within {:.1}°: {}",
             minute(&step["at"]),
-            heading_to_a_tenth(number(&said["before_deg"])),
-            heading_to_a_tenth(number(&said["after_deg"])),
+            heading_to_a_tenth(number(&result["before_deg"])),
+            heading_to_a_tenth(number(&result["after_deg"])),
             signed(turned - 180.0),
-            signed(number(&said["expected_change_deg"])),
-            number(&said["tolerance_deg"]),
-            word(&said["words"])
+            signed(number(&result["expected_change_deg"])),
+            number(&result["tolerance_deg"]),
+            word(&result["words"])
         );
         paper.lines(LEFT + 12.0, Style::plain(SIZE).grey(60), &showed);
     }
 }
 
-/// What the magnetometer told after the steps, and which of them nothing has shown.
-pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
+/// Second readings, and the steps that nothing confirmed.
+pub(super) fn draw_second_readings(paper: &mut Paper, record: &Value) {
     let readings = record["second_readings"].as_array();
     let readings = readings.into_iter().flatten();
     for (index, reading) in readings.enumerate() {
@@ -118,31 +118,31 @@ pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
         if index == 0 {
             paper.title("The magnetometer after the steps");
         }
-        let said = &reading["said"];
-        let parts = said["parts"].as_array().into_iter().flatten();
+        let result = &reading["said"];
+        let parts = result["parts"].as_array().into_iter().flatten();
         let parts = parts.zip(["forward", "to starboard", "down"]);
         let microtesla = |value: &Value| format!("{:.2}", number(value) / 1e3);
         let parts: Vec<String> = parts
             .map(|(part, to)| {
-                let (read, foretold) = (&part["read_nt"], &part["expected_nt"]);
+                let (read, expected) = (&part["read_nt"], &part["expected_nt"]);
                 let figures = format!(
-                    "{to} {} µT, foretold {} ± {}",
+                    "{to} {} µT, predicted {} ± {}",
                     microtesla(read),
-                    microtesla(foretold),
+                    microtesla(expected),
                     microtesla(&part["standard_error_nt"])
                 );
                 figures.replace('-', "−")
             })
             .collect();
         let given = &reading["given"];
-        let mut says = format!("{}: {}", minute(&given["at"]), word(&said["words"]));
-        let could_be = said["could_be"].as_array().into_iter().flatten();
+        let mut text = format!("{}: {}", minute(&given["at"]), word(&result["words"]));
+        let could_be = result["could_be"].as_array().into_iter().flatten();
         let could_be: Vec<String> = could_be.map(word).collect();
         if !could_be.is_empty() {
-            says += "; it could be that ";
-            says += &could_be.join(", or that ");
+            text += "; it could be that ";
+            text += &could_be.join(", or that ");
         }
-        paper.lines(LEFT, Style::plain(SIZE), &says);
+        paper.lines(LEFT, Style::plain(SIZE), &text);
         let mut figures = parts;
         for (name, what) in [
             ("heading_true_deg", "heading true"),
@@ -162,7 +162,7 @@ pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
         .as_array()
         .and_then(|all| all.last());
     if last.is_some_and(|last| last["said"]["verdict"] == "as_planned") {
-        let rests = "What is foretold below rests on the last of these readings.";
+        let rests = "The predictions below are based on the last of these readings.";
         paper.lines(LEFT, Style::plain(SIZE), rests);
     }
     let hidden = &record["not_shown"];
@@ -176,8 +176,8 @@ pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
     paper.fact("which means", &word(&hidden["words"]));
 }
 
-/// Deviation by heading, before at the berth and afterwards at each place.
-pub(super) fn predicted(paper: &mut Paper, record: &Value) {
+/// Deviation by heading, before the adjustment at the berth and after it at each place.
+pub(super) fn draw_predicted(paper: &mut Paper, record: &Value) {
     let of = |name: &str| record[name].as_array().into_iter().flatten();
     let before = of("predicted_before")
         .take(1)
@@ -189,7 +189,7 @@ pub(super) fn predicted(paper: &mut Paper, record: &Value) {
     let tables: Vec<(&str, &Value)> = before.chain(after).collect();
     for some in tables.chunks(PLACES) {
         paper.keep_together(30);
-        paper.title("Deviation foretold, with its 95 % band, by compass heading");
+        paper.title("Predicted deviation, with its 95 % band, by compass heading");
         let across = |index: usize| LEFT + 110.0 + (COLUMN + 16.0) * index as f32;
         let cells = |cell: &dyn Fn(&str, &Value) -> String| -> Vec<(f32, String)> {
             let cells = some.iter().enumerate();
@@ -215,8 +215,8 @@ pub(super) fn predicted(paper: &mut Paper, record: &Value) {
     }
 }
 
-/// Parameters over λ with their standard errors, as they were and as they are foretold.
-pub(super) fn parameters(paper: &mut Paper, record: &Value) {
+/// Parameters over λ with their standard errors, before and as predicted.
+pub(super) fn draw_parameters(paper: &mut Paper, record: &Value) {
     const NAMES: [(&str, &str, f64, &str); 8] = [
         ("bx_nt", "bx/λ", 1e-3, "µT"),
         ("chi13", "χ13/λ", 1.0, ""),
@@ -258,6 +258,6 @@ pub(super) fn parameters(paper: &mut Paper, record: &Value) {
             .collect();
         paper.row(Style::plain(SIZE), label, &cells);
     }
-    let says = "Their covariance, whole, stands in record.json.";
-    paper.lines(LEFT, Style::plain(7.0).grey(90), says);
+    let text = "The full covariance is in record.json.";
+    paper.lines(LEFT, Style::plain(7.0).grey(90), text);
 }

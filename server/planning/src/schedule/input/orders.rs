@@ -5,9 +5,8 @@
 
 use crate::port_calls::StoredCall as Call;
 use crate::schedule::plan::{LeftOut, NO_TERMS};
-use binnacle_orders::dispatch::{Alongside, CallFit};
-use binnacle_orders::firms::port_meant;
-use binnacle_orders::work_orders::State;
+use binnacle_orders::firms::named_port;
+use binnacle_orders::work_orders::{Alongside, CallFit, State};
 use binnacle_platform::db::{Db, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, VesselId};
@@ -114,7 +113,7 @@ impl Order {
     /// An unknown port matches every call.
     pub(crate) fn call(&self, calls: &[Call]) -> Option<CallId> {
         let of_vessel = calls.iter().filter(|call| call.vessel_id == self.vessel_id);
-        let meant = port_meant(&self.port).map(|port| port.code.to_string());
+        let meant = named_port(&self.port).map(|port| port.code.to_string());
         let there = of_vessel.filter(|call| meant.as_ref().is_none_or(|code| *code == call.port));
         let mut then =
             there.filter(|call| call.eta <= self.planned_at && self.planned_at <= call.etd);
@@ -152,7 +151,7 @@ impl Order {
 
     /// Returns the reason why the planned time lies outside the call, if it does.
     fn problem_of_time(&self, there: &Alongside) -> Option<String> {
-        let meant = port_meant(&self.port).map(|port| port.code.to_string());
+        let meant = named_port(&self.port).map(|port| port.code.to_string());
         let port = meant.unwrap_or_else(|| there.port.clone());
         match there.fit(&port, self.planned_at) {
             CallFit::Fits => None,

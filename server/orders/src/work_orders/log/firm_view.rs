@@ -1,19 +1,20 @@
-//! What a firm sees of an order's log: nothing of what is between the operator and others.
+//! View of an order's log for a firm: exchanges with other firms are withheld.
 //!
-//! What always holds: an entry that is withheld leaves its number, its hash and that of
-//! the entry before, so that the log can be checked without it.
+//! What always holds: a withheld entry leaves its number, its hash and that of the entry before,
+//! so that the log can be checked without it.
 
-use crate::work_orders::log_entry::{Entry, canonical};
+use crate::work_orders::log::canonical_json::canonical;
+use crate::work_orders::log::entry::Entry;
 use binnacle_platform::error::Result;
 use binnacle_platform::tenants::Tenant;
 use serde_json::json;
 
-/// A line of a log as a tenant reads it.
+/// Returns a line of a log as a tenant may read it.
 ///
 /// # Errors
 /// When it cannot be written as JSON.
 pub(crate) fn line(tenant: Tenant, entry: &Entry, line: String, sha256: &str) -> Result<String> {
-    let seen = |firm| entry.content.is_seen_by(firm);
+    let seen = |firm| entry.content.event().audience().includes(firm);
     if tenant.firm().is_none_or(seen) {
         return Ok(line);
     }

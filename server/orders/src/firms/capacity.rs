@@ -1,13 +1,12 @@
-//! Which ships a firm is to see on a day, by orders of all operators, and whether its teams
-//! suffice for one more.
+//! Capacity of a firm: the vessels it visits on a day, by orders of all operators, and its teams.
 //!
-//! What always holds: whoever books a firm holds its lock until the transaction ends, so that
-//! of two who want its last team one has it. A team is in one port a day. An operator learns
-//! of others' orders only that no team is left; the firm sees its own. An operator asks no firm
-//! for a time at which it does not work by the operator's own terms. A firm whose terms nobody
-//! has said can be asked anything.
+//! What always holds: a booking holds the firm's lock until the transaction ends, so that the
+//! last team is booked once. A team is in one port a day. An operator learns of others' orders
+//! only that no team is left; the firm sees its own. An operator offers no job at a time at which
+//! the firm does not work by the operator's terms. A firm without terms accepts any time.
 
-use super::{Terms, store};
+use super::store;
+use super::terms::Terms;
 use binnacle_fleet::particulars;
 use binnacle_platform::db::{Db, Tx, execute, rows};
 use binnacle_platform::error::{Error, Result};
@@ -19,49 +18,49 @@ use binnacle_schedule::zone::Zone;
 use chrono::NaiveDate;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A port's day is within so many hours of any of its instants, in whatever zone.
-const AROUND_H: f64 = 40.0;
+/// Largest distance of a port's day from any of its instants, hours, in whatever zone.
+const MAX_DAY_OFFSET_H: f64 = 40.0;
 
-/// An order that a firm is asked for, or has.
+/// Order that a firm has been offered, or has.
 #[derive(Clone, Debug, sqlx::FromRow)]
 pub struct Booking {
-    /// Whose vessel it is.
+    /// Operator of the vessel.
     pub operator_id: OperatorId,
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Its name.
     pub vessel_name: String,
     /// The order.
     pub order_id: OrderId,
     port: String,
     planned_at: Time,
-    /// Whether the firm has it; it is only asked otherwise.
+    /// True if the firm has it, false if it has an offer only.
     pub is_taken: bool,
 }
 
-/// A visit that a firm is to make.
+/// Visit of a firm to a vessel.
 pub struct Visit<'a> {
-    /// By whose order.
+    /// Operator of the order.
     pub operator: OperatorId,
-    /// To which vessel.
+    /// Vessel to visit.
     pub vessel: VesselId,
-    /// Where, as the order has it.
+    /// Port, as the order names it.
     pub port: &'a str,
-    /// When.
+    /// Time of the visit.
     pub at: Time,
 }
 
-/// Who is told that there is no room.
+/// Party that books a visit.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Told {
-    /// The operator who asks, for whom what it has asked the firm already counts.
+pub enum Requester {
+    /// The operator, for whom its own open offers count too.
     Operator,
-    /// The firm that says yes.
+    /// The firm, which accepts.
     Firm,
 }
 
-/// The port that an order's words mean: its code, alone or behind its name, or its name.
-pub fn port_meant(words: &str) -> Option<&'static Port> {
+/// Port that an order names: by its code, alone or behind its name, or by its name.
+pub fn named_port(words: &str) -> Option<&'static Port> {
     let code = words
         .rsplit_once('(')
         .and_then(|(_, code)| code.strip_suffix(')'));
@@ -73,30 +72,30 @@ pub fn port_meant(words: &str) -> Option<&'static Port> {
     code.and_then(by_code)
         .or_else(|| by_code(words))
         .or_else(|| {
-            // A name that several ports have tells nothing.
+            // A name shared by several ports is ambiguous.
             let mut all = ports::all().iter().filter(named);
             all.next().filter(|_| all.next().is_none())
         })
 }
 
-/// One port is one place, however it is written.
+/// Key of a port, however its name is written.
 fn place(words: &str) -> String {
-    port_meant(words).map_or_else(|| words.trim().to_lowercase(), |port| port.code.to_string())
+    named_port(words).map_or_else(|| words.trim().to_lowercase(), |port| port.code.to_string())
 }
 
-/// The day of an instant in a port's time.
+/// Day of an instant in a port's time.
 fn day(words: &str, at: Time) -> NaiveDate {
-    Instant(at.0).date(port_meant(words).map_or_else(Zone::utc, |port| port.zone))
+    Instant(at.0).date(named_port(words).map_or_else(Zone::utc, |port| port.zone))
 }
 
 impl Booking {
-    /// The day, in the port's time.
+    /// Day in the port's time.
     pub fn day(&self) -> NaiveDate {
         day(&self.port, self.planned_at)
     }
 }
 
-/// How many teams it takes to be at all these ships on one day.
+/// Number of teams for these vessels on one day.
 fn teams(at: impl IntoIterator<Item = (String, VesselId)>, jobs_a_team: u32) -> u32 {
     let mut there: BTreeMap<String, BTreeSet<VesselId>> = BTreeMap::new();
     for (place, vessel) in at {
@@ -108,7 +107,7 @@ fn teams(at: impl IntoIterator<Item = (String, VesselId)>, jobs_a_team: u32) -> 
         .fold(0, u32::saturating_add)
 }
 
-/// Teams that orders take which a plan does not hold itself, day by day.
+/// Teams booked by orders outside a plan, day by day.
 pub fn teams_taken<'a>(
     bookings: impl IntoIterator<Item = &'a Booking>,
     jobs_a_team: u32,
@@ -143,7 +142,7 @@ macro_rules! bookings_sql {
     };
 }
 
-/// What a firm is asked for and has, from some time on.
+/// Lists a firm's offers and orders from a time on.
 pub async fn bookings(db: &Db, firm: FirmId, from: Time) -> Result<Vec<Booking>> {
     Ok(rows!(
         db,
@@ -154,15 +153,19 @@ pub async fn bookings(db: &Db, firm: FirmId, from: Time) -> Result<Vec<Booking>>
     )?)
 }
 
-/// Refuses a visit at a time at which a firm is closed, or to a ship that it may not adjust.
-async fn must_suit(tx: &mut Tx, firm_name: &str, terms: &Terms, visit: &Visit<'_>) -> Result<()> {
+/// Refuses a visit while a firm is closed, or to a vessel that it may not adjust.
+async fn require_suitable_firm(
+    tx: &mut Tx,
+    firm_name: &str,
+    terms: &Terms,
+    visit: &Visit<'_>,
+) -> Result<()> {
     let wrong = |why: String, instead: &str| {
         Err(Error::WrongState(format!(
-            "by the terms that you have said, {firm_name} {why}: choose another {instead}, or \
-             change the terms"
+            "by your terms, {firm_name} {why}: choose another {instead}, or change the terms"
         )))
     };
-    if let Some(why) = terms.closed_at(visit.at, port_meant(visit.port)) {
+    if let Some(why) = terms.closed_at(visit.at, named_port(visit.port)) {
         return wrong(why, "time");
     }
     let (flag, licence) = particulars::adjuster_requirements(tx, visit.vessel).await?;
@@ -172,29 +175,30 @@ async fn must_suit(tx: &mut Tx, firm_name: &str, terms: &Terms, visit: &Visit<'_
     }
 }
 
-/// Refuses a visit for which a firm has no team left, or by its terms does not work.
+/// Refuses a visit for which a firm has no team left, or which its terms exclude.
 ///
 /// # Errors
-/// [`Error::WrongState`], in words for whom it is told.
-pub async fn must_have_room(
+/// [`Error::WrongState`], in words for the requester.
+pub async fn require_capacity(
     tx: &mut Tx,
-    (firm, firm_name): (FirmId, &str),
+    firm: FirmId,
+    firm_name: &str,
     visit: &Visit<'_>,
-    told: Told,
+    requester: Requester,
 ) -> Result<()> {
-    // Whoever books the firm meanwhile waits.
+    // Other bookings of the firm wait.
     execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
-    let said = store::terms_of(tx, firm).await?;
-    let said: Vec<(OperatorId, Terms)> = said
+    let all_terms = store::list_terms(tx, firm).await?;
+    let all_terms: Vec<(OperatorId, Terms)> = all_terms
         .into_iter()
         .map(|(operator, text)| Ok((operator, serde_json::from_str(&text)?)))
         .collect::<Result<_>>()?;
-    if said.is_empty() {
+    if all_terms.is_empty() {
         return Ok(());
     }
     let (from, to) = (
-        Time(visit.at.0.plus_seconds(-AROUND_H * 3600.0)),
-        Time(visit.at.0.plus_seconds(AROUND_H * 3600.0)),
+        Time(visit.at.0.plus_seconds(-MAX_DAY_OFFSET_H * 3600.0)),
+        Time(visit.at.0.plus_seconds(MAX_DAY_OFFSET_H * 3600.0)),
     );
     let around = rows!(
         in tx,
@@ -205,46 +209,41 @@ pub async fn must_have_room(
         to,
         visit.vessel
     )?;
-    let mine = said
+    let own = all_terms
         .iter()
         .find(|(operator, _)| *operator == visit.operator);
-    // When and for whom it works is the operator's word of the firm, which may know better
+    // Times and vessels are the operator's own record of the firm: they do not bind the firm
     // itself.
-    if told == Told::Operator
-        && let Some((_, terms)) = mine
+    if requester == Requester::Operator
+        && let Some((_, terms)) = own
     {
-        must_suit(tx, firm_name, terms, visit).await?;
+        require_suitable_firm(tx, firm_name, terms, visit).await?;
     }
     let that_day = day(visit.port, visit.at);
     let there = (place(visit.port), visit.vessel);
     let others: Vec<&Booking> = around.iter().filter(|one| one.day() == that_day).collect();
-    let counts =
-        |one: &Booking| one.is_taken || told == Told::Operator && one.operator_id == visit.operator;
-    // Each operator knows how many teams work for it: the most that anybody knows of are all.
-    let most = |figure: fn(&Terms) -> u32| said.iter().map(|(_, terms)| figure(terms)).max();
-    let all = (
-        most(|terms| terms.teams),
-        most(|terms| terms.jobs_a_team_day),
-    );
-    let mine = mine.map(|(_, terms)| (terms.teams, terms.jobs_a_team_day));
+    let counts = |one: &Booking| {
+        one.is_taken || requester == Requester::Operator && one.operator_id == visit.operator
+    };
+    // Each operator records the teams that work for it: the largest number counts as all.
+    let most = |figure: fn(&Terms) -> u32| all_terms.iter().map(|(_, terms)| figure(terms)).max();
+    let all_teams = most(|terms| terms.teams).unwrap_or(0);
+    let all_jobs = most(|terms| terms.jobs_a_team_day).unwrap_or(1);
     let needed = |whose: &dyn Fn(&Booking) -> bool, jobs: u32| {
         let ships = others.iter().filter(|one| counts(one) && whose(one));
         let ships = ships.map(|one| (place(&one.port), one.vessel_id));
         teams(ships.chain([there.clone()]), jobs)
     };
-    let is_full = needed(&|_| true, all.1.unwrap_or(1)) > all.0.unwrap_or(0)
-        || mine.is_some_and(|(teams, jobs)| {
-            needed(&|one| one.operator_id == visit.operator, jobs) > teams
-        });
+    let is_own = |one: &Booking| one.operator_id == visit.operator;
+    let is_full = needed(&|_| true, all_jobs) > all_teams
+        || own.is_some_and(|(_, terms)| needed(&is_own, terms.jobs_a_team_day) > terms.teams);
     if !is_full {
         return Ok(());
     }
-    Err(Error::WrongState(match told {
-        Told::Operator => {
-            let mine = others
-                .iter()
-                .filter(|one| counts(one) && one.operator_id == visit.operator);
-            let mine: Vec<String> = mine
+    Err(Error::WrongState(match requester {
+        Requester::Operator => {
+            let own = others.iter().filter(|one| counts(one) && is_own(one));
+            let own: Vec<String> = own
                 .map(|one| {
                     let Booking {
                         order_id,
@@ -255,14 +254,14 @@ pub async fn must_have_room(
                     format!("work order {order_id} of {vessel_name} at {port}")
                 })
                 .collect();
-            let holding = if mine.is_empty() {
+            let holding = if own.is_empty() {
                 String::new()
             } else {
-                format!(": you have {}", mine.join(", "))
+                format!(": you have {}", own.join(", "))
             };
             format!("{firm_name} has no team left on {that_day}{holding}")
         }
-        Told::Firm => {
+        Requester::Firm => {
             let ships = others.iter().filter(|one| one.is_taken);
             let ships: BTreeSet<String> = ships
                 .map(|one| format!("{} at {}", one.vessel_name, one.port))

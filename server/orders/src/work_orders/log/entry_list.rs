@@ -1,4 +1,4 @@
-//! A page of an order's log, as a response.
+//! Page of an order's log, as a response.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -8,11 +8,11 @@ use utoipa::ToSchema;
 #[derive(Serialize, ToSchema)]
 #[schema(as = WorkOrderEntry)]
 pub(crate) struct EntryLine {
-    /// Counts from 1.
+    /// Number of the entry, from 1.
     pub(crate) seq: i64,
     /// SHA-256 of the line as it stands in the archive, hexadecimal.
     pub(crate) sha256: String,
-    /// What happened: `kind`, `at`, `author`, `previous_sha256` and `content`.
+    /// The entry: `kind`, `at`, `author`, `previous_sha256` and `content`.
     #[schema(value_type = Object)]
     pub(crate) entry: Value,
 }

@@ -1,19 +1,20 @@
-//! Orders and their logs as they are found in the database.
+//! Queries of orders and their logs.
 //!
-//! What always holds: an order is found only by its operator, or by a firm that is asked,
-//! has proposed terms, or has it.
+//! What always holds: an order is found only by its operator, or by a firm that has an open offer
+//! or proposal, or has the order.
 
-use crate::work_orders::order::{Filter, Summary};
-use crate::work_orders::store::{Whole, read};
+use crate::work_orders::state::State;
+use crate::work_orders::store::stored_order::StoredOrder;
+use crate::work_orders::summary::{Filter, Summary};
 use binnacle_platform::db::{self, Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::ids::{FirmId, OrderId, VesselId};
+use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, PhotoId, VesselId};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 use futures_util::future::BoxFuture;
 use uuid::Uuid;
 
-/// Orders as a firm (`$1`) or, where that is none, an operator sees them.
+/// Summaries of orders as a firm (`$1`) or, if that is null, an operator sees them.
 macro_rules! summary_sql {
     ($rest:literal) => {
         concat!(
@@ -40,7 +41,7 @@ macro_rules! summary_sql {
     };
 }
 
-/// The newest first, from before an id.
+/// Lists orders before an id, the newest first.
 pub(crate) async fn list(
     db: &Db,
     tenant: Tenant,
@@ -70,11 +71,11 @@ pub(crate) async fn list(
     )?)
 }
 
-/// An order that the tenant sees, in a line.
+/// Finds the summary of an order that the tenant sees.
 ///
 /// # Errors
 /// [`Error::NotFound`] when there is none.
-pub(crate) async fn summary(db: &Db, tenant: Tenant, id: OrderId) -> Result<Summary> {
+pub(crate) async fn find_summary(db: &Db, tenant: Tenant, id: OrderId) -> Result<Summary> {
     row!(
         db,
         Summary,
@@ -90,8 +91,8 @@ pub(crate) async fn summary(db: &Db, tenant: Tenant, id: OrderId) -> Result<Summ
     .ok_or(Error::NotFound("work order"))
 }
 
-/// Finds the vessel of an order, whoever asks.
-pub(crate) fn vessel_of(
+/// Finds the vessel of an order, for any tenant.
+pub(crate) fn find_vessel(
     tx: &mut Tx,
     order: OrderId,
 ) -> BoxFuture<'_, db::Result<Option<VesselId>>> {
@@ -106,8 +107,8 @@ pub(crate) fn vessel_of(
     })
 }
 
-/// The vessel of an order that a firm was once asked to do, whether or not it still sees it.
-pub(crate) async fn vessel_of_asked(db: &Db, firm: FirmId, id: OrderId) -> Result<VesselId> {
+/// Finds the vessel of an order that a firm was once offered, whether or not it still sees it.
+pub(crate) async fn find_vessel_for_firm(db: &Db, firm: FirmId, id: OrderId) -> Result<VesselId> {
     let found = row!(
         db,
         (VesselId,),
@@ -121,8 +122,12 @@ pub(crate) async fn vessel_of_asked(db: &Db, firm: FirmId, id: OrderId) -> Resul
     Ok(vessel)
 }
 
-/// Orders of which an answer is overdue, the longest first.
-pub(crate) async fn overdue(db: &Db, now: Time, limit: i64) -> Result<Vec<(VesselId, OrderId)>> {
+/// Lists orders with an overdue answer, the longest overdue first.
+pub(crate) async fn list_overdue(
+    db: &Db,
+    now: Time,
+    limit: i64,
+) -> Result<Vec<(VesselId, OrderId)>> {
     Ok(rows!(
         db,
         (VesselId, OrderId),
@@ -135,9 +140,8 @@ pub(crate) async fn overdue(db: &Db, now: Time, limit: i64) -> Result<Vec<(Vesse
     )?)
 }
 
-/// The order as its operator sees it, within a transaction, of a vessel that is known:
-/// others who would change it wait.
-pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<Whole> {
+/// Locks an order of a vessel, and loads it as its operator sees it.
+pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<StoredOrder> {
     execute!(
         &mut *tx,
         "UPDATE work_orders SET state = state WHERE vessel_id = $1 AND id = $2",
@@ -162,13 +166,12 @@ pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<W
         vessel,
         id
     )?;
-    let log = read(lines)?;
-    Ok(Whole { summary, log })
+    StoredOrder::read(summary, lines)
 }
 
-/// An order that the tenant sees, with its log.
-pub(crate) async fn whole(db: &Db, tenant: Tenant, id: OrderId) -> Result<Whole> {
-    let summary = summary(db, tenant, id).await?;
+/// Finds an order that the tenant sees, with its log.
+pub(crate) async fn find(db: &Db, tenant: Tenant, id: OrderId) -> Result<StoredOrder> {
+    let summary = find_summary(db, tenant, id).await?;
     let lines = rows!(
         db,
         (String,),
@@ -178,12 +181,11 @@ pub(crate) async fn whole(db: &Db, tenant: Tenant, id: OrderId) -> Result<Whole>
         summary.vessel_id,
         id
     )?;
-    let log = read(lines)?;
-    Ok(Whole { summary, log })
+    StoredOrder::read(summary, lines)
 }
 
-/// Lines of an order's log as they were hashed, with their hashes, from after a number.
-pub(crate) async fn lines(
+/// Lists the original lines of an order's log after a number, with their hashes.
+pub(crate) async fn list_lines(
     db: &Db,
     vessel: VesselId,
     id: OrderId,
@@ -201,5 +203,87 @@ pub(crate) async fn lines(
         id,
         after.unwrap_or(0),
         limit
+    )?)
+}
+
+/// Finds the compass's last completed order. One that was closed after headings at sea had
+/// contradicted it still counts as failed.
+pub(crate) async fn find_last_completed(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<(OrderId, State, Time)>> {
+    Ok(row!(
+        in tx,
+        (OrderId, State, Time),
+        "SELECT id,
+                CASE WHEN state = 'closed' AND verified_at IS NULL THEN 'failed' ELSE state END,
+                completed_at
+         FROM work_orders
+         WHERE vessel_id = $1 AND compass_id = $2 AND completed_at IS NOT NULL
+         ORDER BY completed_at DESC, id DESC
+         LIMIT 1",
+        vessel,
+        compass
+    )?)
+}
+
+/// Finds the names of an operator's vessel and of one of its compasses.
+///
+/// # Errors
+/// [`Error::NotFound`] when there is no such vessel or compass.
+pub(crate) async fn find_names(
+    tx: &mut Tx,
+    operator: OperatorId,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<(String, String)> {
+    let found = row!(
+        in &mut *tx,
+        (String,),
+        "SELECT name FROM vessels WHERE operator_id = $1 AND id = $2 ORDER BY id",
+        operator,
+        vessel
+    )?;
+    let (vessel_name,) = found.ok_or(Error::NotFound("vessel"))?;
+    let found = row!(
+        in tx,
+        (String,),
+        "SELECT name FROM compasses WHERE vessel_id = $1 AND id = $2 ORDER BY id",
+        vessel,
+        compass
+    )?;
+    let (compass_name,) = found.ok_or(Error::NotFound("compass"))?;
+    Ok((vessel_name, compass_name))
+}
+
+/// Finds the signed record; `None` before the order is completed.
+pub(crate) async fn find_record(db: &Db, vessel: VesselId, id: OrderId) -> Result<Option<String>> {
+    let found = row!(
+        db,
+        (Option<String>,),
+        "SELECT record FROM work_orders WHERE vessel_id = $1 AND id = $2 ORDER BY id",
+        vessel,
+        id
+    )?;
+    Ok(found.and_then(|(record,)| record))
+}
+
+/// Finds a photograph's media type and bytes.
+pub(crate) async fn find_photo(
+    db: &Db,
+    vessel: VesselId,
+    order: OrderId,
+    id: PhotoId,
+) -> Result<Option<(String, Vec<u8>)>> {
+    Ok(row!(
+        db,
+        (String, Vec<u8>),
+        "SELECT media_type, bytes FROM work_order_photos
+         WHERE vessel_id = $1 AND order_id = $2 AND id = $3
+         ORDER BY id",
+        vessel,
+        order,
+        id
     )?)
 }

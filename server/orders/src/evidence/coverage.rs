@@ -1,31 +1,33 @@
-//! What a signature over the record's SHA-256 ties down: the record, what is made from it
-//! and nothing else, and the log as far as the record names it.
+//! Coverage of a signature over the record's SHA-256: the record, what is made from it, and the
+//! log up to the entry it names.
 //!
-//! What always holds: a file that is not covered is said to be so, or is a problem.
+//! What always holds: a file without coverage is reported as such, or as a problem.
 
-use super::archive::Head;
+use super::archive::LogHead;
+use super::findings::Findings;
 use super::sheets::{predicted_csv, record_pdf};
-use super::verify::Found;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// How far the log went when the record was made, by the record.
-pub(super) fn head(files: &BTreeMap<String, Vec<u8>>) -> Option<Head> {
+/// Length of the log at completion, by the record.
+pub(super) fn log_head(files: &BTreeMap<String, Vec<u8>>) -> Option<LogHead> {
     let record: Value = serde_json::from_slice(files.get("record.json")?).ok()?;
     serde_json::from_value(record["log"].clone()).ok()
 }
 
-/// Holds what is made from the record against what the record makes, and says what the
-/// record covers of an archive whose log has so many entries and signatures.
-pub(super) fn covered(
+/// Compares derived files with the record, and reports the record's coverage of an archive with
+/// this number of entries and signatures.
+pub(super) fn report_coverage(
     files: &BTreeMap<String, Vec<u8>>,
     entries: i64,
     signatures: usize,
-    found: &mut Found,
+    found: &mut Findings,
 ) {
-    made_from_the_record(files, found);
-    let Some(head) = head(files) else {
-        found.problems.push("record.json names no log".to_owned());
+    check_derived_files(files, found);
+    let Some(head) = log_head(files) else {
+        found
+            .problems
+            .push("record.json does not name the log".to_owned());
         return;
     };
     let of_the_record = |name: &&String| {
@@ -41,36 +43,36 @@ pub(super) fn covered(
     found.facts.push(format!(
         "{} {} and the log's entries 1 to {}",
         if signatures > 0 {
-            "the adjuster's word, and the signature by a key, cover"
+            "the adjuster's sign-off, and the signature by a key, cover"
         } else {
-            "the adjuster's word covers"
+            "the adjuster's sign-off covers"
         },
         covers.join(", "),
         head.entries
     ));
-    let mut beyond: Vec<String> = later.into_iter().cloned().collect();
+    let mut uncovered: Vec<String> = later.into_iter().cloned().collect();
     if entries > head.entries {
-        beyond.push(format!("the log's entries from {} on", head.entries + 1));
+        uncovered.push(format!("the log's entries from {}", head.entries + 1));
     }
-    if !beyond.is_empty() {
+    if !uncovered.is_empty() {
         found.facts.push(format!(
-            "no signature covers {}: they came with the record or after it",
-            beyond.join(", ")
+            "no signature covers {}: they were written with the record or after it",
+            uncovered.join(", ")
         ));
     }
     if files.get("README.txt").map(Vec::as_slice) != Some(super::README.as_bytes()) {
-        found
-            .facts
-            .push("README.txt is not this version's; it is no part of the evidence".to_owned());
+        found.facts.push(
+            "README.txt differs from this version's; it is not part of the evidence".to_owned(),
+        );
     }
 }
 
-fn made_from_the_record(files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+fn check_derived_files(files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     let text = files
         .get("record.json")
         .map(|bytes| std::str::from_utf8(bytes));
     let Some(Ok(text)) = text else {
-        // That it is missing, or no text of ours, is said where it is held against the log.
+        // A missing or unreadable record is reported by the check against the log.
         return;
     };
     let made = [
@@ -81,8 +83,8 @@ fn made_from_the_record(files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
         let is_so = made.is_ok_and(|made| files.get(name) == Some(&made));
         if !is_so {
             found.problems.push(format!(
-                "{name} is not what version {} makes from record.json: it was changed, or made \
-                 by another version; what was signed is record.json",
+                "{name} differs from what version {} makes from record.json: it was changed, or \
+                    made by another version; the signed file is record.json",
                 env!("CARGO_PKG_VERSION")
             ));
         }

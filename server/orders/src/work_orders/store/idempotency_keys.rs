@@ -1,17 +1,17 @@
-//! Keys of requests to an order: one that is sent again writes nothing more, however late.
+//! Idempotency keys of requests to an order.
 //!
-//! What always holds: a key and what was written under it are stored in one transaction,
-//! and are kept as long as the order. A key is the operator's or the firm's own.
+//! What always holds: a key and its entry are stored in one transaction, and are kept as long as
+//! the order. A key belongs to the operator or to one firm.
 
-use crate::work_orders::order::Summary;
+use crate::work_orders::summary::Summary;
 use binnacle_platform::db::{Db, Tx, execute, row};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::idempotency::Key;
 use binnacle_platform::tenants::Tenant;
 use uuid::Uuid;
 
-/// The entry to write under: `wanted`, or the one that the same request wrote before
-/// under this key. For whoever holds the order's lock.
+/// Returns the entry id to write under: `wanted`, or that of the same request before. The caller
+/// holds the order's lock.
 ///
 /// # Errors
 /// When the key was used for another request to this order.
@@ -55,7 +55,7 @@ pub(crate) async fn once(
     Ok(wanted)
 }
 
-/// What the same request wrote before under this key; none where it has not come yet.
+/// Finds the entry that the same request wrote before.
 ///
 /// # Errors
 /// When the key was used for another request to this order.

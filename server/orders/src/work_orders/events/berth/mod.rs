@@ -1,0 +1,11 @@
+//! Events of the berth session: readings, plan, steps, corrector settings and photographs.
+
+mod berth_reading;
+mod corrector_settings;
+mod photo;
+mod plan;
+mod second_reading;
+mod step;
+
+pub(crate) use corrector_settings::{CorrectorMove, RevisedStrength};
+pub(crate) use step::RecordedStep;

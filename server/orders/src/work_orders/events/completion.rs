@@ -1,0 +1,23 @@
+//! Completion of the adjustment, signed by the adjuster.
+
+use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::order_state::OrderState;
+use crate::work_orders::payload::signed_record::Completion;
+use crate::work_orders::state::State;
+use binnacle_platform::notices::Kind;
+use binnacle_platform::outbox;
+
+impl Event for Completion {
+    fn apply(&self, state: &mut OrderState) {
+        state.completion = Some(self.clone());
+        state.state = State::Adjusted;
+    }
+
+    fn webhook(&self) -> Option<outbox::Kind> {
+        Some(outbox::Kind::OrderCompleted)
+    }
+
+    fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
+        Some(Headline::new(Kind::Completed, "adjusted and signed"))
+    }
+}

@@ -1,0 +1,111 @@
+//! Proposal of other terms by a firm, and the operator's answer.
+
+use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::offers::OfferState;
+use crate::work_orders::order_state::OrderState;
+use crate::work_orders::payload::exchange::Exchange;
+use crate::work_orders::summary::Summary;
+use binnacle_platform::notices::Kind;
+use binnacle_platform::outbox;
+use serde::{Deserialize, Serialize};
+
+/// Proposal of other terms by a firm.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct Proposed(pub Exchange);
+
+/// Acceptance of a firm's terms by the operator.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct ProposalAccepted(pub Exchange);
+
+/// Refusal of a firm's terms by the operator.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct ProposalDeclined(pub Exchange);
+
+impl Event for Proposed {
+    fn apply(&self, state: &mut OrderState) {
+        state.offers.set(&self.0, OfferState::Proposed);
+        state.follow_offers();
+    }
+
+    fn exchange(&self) -> Option<&Exchange> {
+        Some(&self.0)
+    }
+
+    fn webhook(&self) -> Option<outbox::Kind> {
+        Some(outbox::Kind::OrderAnswered)
+    }
+
+    fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
+        let firm = &self.0.firm.firm_name;
+        Some(Headline::new(
+            Kind::Answered,
+            format!("{firm} proposes other terms"),
+        ))
+    }
+
+    fn changes_offers(&self) -> bool {
+        true
+    }
+}
+
+impl Event for ProposalAccepted {
+    fn apply(&self, state: &mut OrderState) {
+        state.offers.set(&self.0, OfferState::Accepted);
+        state.offers.withdraw_unless(OfferState::is_waiting);
+        if let Some(terms) = &self.0.terms
+            && state.planned_at != Some(terms.planned_at)
+        {
+            // A proposal of a fee alone leaves the time and its call as they are.
+            state.agree_time(terms.planned_at);
+        }
+        state.follow_offers();
+    }
+
+    fn update_summary(&self, summary: &mut Summary) {
+        summary.firm = Some(self.0.firm.firm_name.clone());
+        (summary.adjuster_name, summary.adjuster_licence) = (None, None);
+        summary.apply_terms(&self.0);
+    }
+
+    fn exchange(&self) -> Option<&Exchange> {
+        Some(&self.0)
+    }
+
+    fn webhook(&self) -> Option<outbox::Kind> {
+        Some(outbox::Kind::OrderAnswered)
+    }
+
+    fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
+        Some(Headline::new(Kind::Answered, "your terms are accepted"))
+    }
+
+    fn changes_offers(&self) -> bool {
+        true
+    }
+}
+
+impl Event for ProposalDeclined {
+    fn apply(&self, state: &mut OrderState) {
+        state.offers.set(&self.0, OfferState::Declined);
+        state.follow_offers();
+    }
+
+    fn exchange(&self) -> Option<&Exchange> {
+        Some(&self.0)
+    }
+
+    fn webhook(&self) -> Option<outbox::Kind> {
+        Some(outbox::Kind::OrderAnswered)
+    }
+
+    fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
+        Some(Headline::new(Kind::Answered, "your terms are declined"))
+    }
+
+    fn changes_offers(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,54 @@
+//! Verdict of headings at sea on the prediction.
+
+use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::order_state::OrderState;
+use crate::work_orders::payload::sea_verification::SeaVerification;
+use crate::work_orders::state::State;
+use binnacle_adjustment::adjust::Verification;
+use binnacle_platform::notices::Kind;
+use binnacle_platform::outbox;
+
+impl Event for SeaVerification {
+    fn apply(&self, state: &mut OrderState) {
+        state.state = match self.verification {
+            Verification::Passed { .. } => State::Verified,
+            Verification::MoreNeeded { .. } => State::Adjusted,
+            Verification::Alarm { .. } => State::Failed,
+        };
+        state.verification = Some(self.clone());
+    }
+
+    fn webhook(&self) -> Option<outbox::Kind> {
+        Some(match self.verification {
+            Verification::Passed { .. } => outbox::Kind::OrderVerified,
+            Verification::MoreNeeded { .. } => outbox::Kind::OrderUpdated,
+            Verification::Alarm { .. } => outbox::Kind::OrderFailed,
+        })
+    }
+
+    fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
+        self.headline()
+    }
+
+    fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
+        self.headline()
+    }
+
+    fn quote(&self) -> Option<String> {
+        Some(self.words.clone())
+    }
+}
+
+impl SeaVerification {
+    /// Headline for both sides.
+    fn headline(&self) -> Option<Headline> {
+        match self.verification {
+            Verification::Passed { .. } => Some(Headline::new(Kind::Verified, "verified at sea")),
+            Verification::Alarm { .. } => Some(Headline::new(
+                Kind::VerificationFailed,
+                "headings at sea do not confirm the adjustment",
+            )),
+            Verification::MoreNeeded { .. } => None,
+        }
+    }
+}
