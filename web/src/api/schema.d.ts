@@ -31,8 +31,8 @@ export interface paths {
         get?: never;
         /**
          * Send a report from on board
-         * @description Answers when it is durable. The same again, or an older revision, changes
-         *     nothing and is answered alike; so does a revision of what was withdrawn ashore.
+         * @description Responds when it is durable. The same report again, an older revision, or a revision of an
+         *     entry withdrawn on shore changes nothing and gets the same response.
          */
         put: operations["put_report"];
         post?: never;
@@ -50,11 +50,11 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
-        /** Put another token in place of the one that this request comes with */
+        /** Replace the token of this request */
         put: operations["replace_token"];
         /**
-         * Make a token that is to take the place of the agent's
-         * @description It is not valid before it is put in place; nothing is stored of it here.
+         * Propose a new token for the agent
+         * @description It is not stored, and not valid until the agent puts it in place.
          */
         post: operations["propose_token"];
         delete?: never;
@@ -128,7 +128,7 @@ export interface paths {
         put?: never;
         /**
          * Clear an alert
-         * @description It comes back only when its cause does, or gets worse. Clearing it again changes
+         * @description It is raised again only when its cause recurs or gets worse. Clearing it again changes
          *     nothing.
          */
         post: operations["clear_alert"];
@@ -222,8 +222,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * List what the fleet's compasses stand in
-         * @description Every compass of the vessels in service, with its binnacle in short where one is entered.
+         * List the fleet's binnacles
+         * @description Every compass of the vessels in service, with a summary of its binnacle where one is entered.
          */
         get: operations["list_binnacles"];
         put?: never;
@@ -241,14 +241,14 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** List your calendars */
+        /** List your calendar feeds */
         get: operations["list_feeds"];
         put?: never;
         /**
-         * Make a calendar
-         * @description Of all your work orders, or of one vessel's; for an operator with port calls and due
-         *     dates. The answer shows its secret address, this once. It ends when you are removed, shut
-         *     out or given another one-time code.
+         * Create a calendar feed
+         * @description The feed has all your work orders, or those of one vessel; an operator's also has port calls and
+         *     due dates. The response shows its secret address, once. The feed ends when your account is
+         *     removed, disabled or given a new one-time code.
          */
         post: operations["create_feed"];
         delete?: never;
@@ -268,8 +268,8 @@ export interface paths {
         put?: never;
         post?: never;
         /**
-         * Remove a calendar
-         * @description Its address shows nothing from now on.
+         * Delete a calendar feed
+         * @description Its address stops working at once.
          */
         delete: operations["delete_feed"];
         options?: never;
@@ -286,11 +286,11 @@ export interface paths {
         };
         /**
          * Read a calendar
-         * @description iCalendar (RFC 5545), by a calendar's secret address or as any other route. Of work
-         *     orders what is offered or planned is tentative, what a firm has is confirmed. An
-         *     operator's calendar has port calls too, and each compass's due date as a day, as it was
-         *     looked at within the last quarter of an hour. Each event keeps its `UID`, and its
-         *     `SEQUENCE` grows; what is cancelled or withdrawn stays for a season and says so.
+         * @description iCalendar (RFC 5545), by a feed's secret address or signed in as for any other route. Planned
+         *     and offered work orders are tentative, accepted ones confirmed. An operator's calendar also has
+         *     port calls, and each compass's due date as a day, at most a quarter of an hour old. Each event
+         *     keeps its `UID`, and its `SEQUENCE` grows. Cancelled orders and withdrawn calls stay for some
+         *     months, marked.
          */
         get: operations["calendar"];
         put?: never;
@@ -330,7 +330,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** List on what terms firms work for you */
+        /** List the terms of firms for you */
         get: operations["list_terms"];
         put?: never;
         post?: never;
@@ -349,14 +349,13 @@ export interface paths {
         };
         /**
          * List the firms
-         * @description Those that your operator works with; an adjuster's own; all for a platform admin.
+         * @description Those that work for your operator; an adjuster's own; all for a platform admin.
          */
         get: operations["list_firms"];
         put?: never;
         /**
-         * Enter a firm
-         * @description For platform admins. Its first people are made by `binnacle-server admin create
-         *     adjuster`.
+         * Create a firm
+         * @description For platform admins. Its first users are created by `binnacle-server admin create adjuster`.
          */
         post: operations["create_firm"];
         delete?: never;
@@ -391,13 +390,13 @@ export interface paths {
         };
         /**
          * List a firm's keys
-         * @description Also those that were revoked.
+         * @description Including revoked ones.
          */
         get: operations["list_keys"];
         put?: never;
         /**
-         * Register a key of your firm's
-         * @description With a signature by it, so that nobody registers another's.
+         * Register a key of your firm
+         * @description With a signature by it, so that nobody registers another's key.
          */
         post: operations["register_key"];
         delete?: never;
@@ -417,8 +416,8 @@ export interface paths {
         put?: never;
         post?: never;
         /**
-         * Revoke a key of your firm's
-         * @description What it signed before stays signed; it vouches for nothing from now on.
+         * Revoke a key of your firm
+         * @description Earlier signatures stay valid; from now on it vouches for nothing.
          */
         delete: operations["revoke_key"];
         options?: never;
@@ -435,15 +434,15 @@ export interface paths {
         };
         get?: never;
         /**
-         * Say on what terms a firm works for you
-         * @description The schedule plans with firms that have terms. Terms without days or ports are kept,
-         *     and said to be a problem.
+         * Set the terms of a firm for you
+         * @description The schedule plans with firms that have terms. Terms without days or ports are stored, and
+         *     reported as a problem.
          */
         put: operations["set_terms"];
         post?: never;
         /**
-         * Plan with a firm no more
-         * @description Its terms are removed; orders that it has stay with it.
+         * Remove the terms of a firm for you
+         * @description The schedule no longer plans with the firm. It keeps its orders.
          */
         delete: operations["end_terms"];
         options?: never;
@@ -479,9 +478,8 @@ export interface paths {
         put?: never;
         /**
          * Set a password with a one-time code
-         * @description Sessions, tokens and calendars there were end, and whom a sign-in provider means is
-         *     forgotten: whoever needs a code may have lost more than the password. A second factor
-         *     stays.
+         * @description All sessions, tokens and calendar feeds of the user end, and the binding to a sign-in
+         *     provider is removed: more than the password may have been lost. A second factor stays.
          */
         post: operations["accept_invitation"];
         delete?: never;
@@ -497,12 +495,12 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** List who gets mail */
+        /** List the mail recipients */
         get: operations["list_recipients"];
         put?: never;
         /**
-         * Have someone get mail
-         * @description From the next alert on that is as bad as `severity`, or gets so.
+         * Add a mail recipient
+         * @description The recipient gets mail from the next alert that has or reaches `severity`.
          */
         post: operations["create_recipient"];
         delete?: never;
@@ -518,14 +516,14 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** See someone who gets mail */
+        /** Show a mail recipient */
         get: operations["find_recipient"];
-        /** Change from when on someone gets mail */
+        /** Change a mail recipient's minimum severity */
         put: operations["change_recipient"];
         post?: never;
         /**
-         * Send someone no more mail
-         * @description What was still to be sent is forgotten.
+         * Remove a mail recipient
+         * @description Pending letters are deleted.
          */
         delete: operations["delete_recipient"];
         options?: never;
@@ -541,9 +539,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * List someone's letters
-         * @description With `state=dead`, those that were given up. What is done with is kept for 30
-         *     days.
+         * List a recipient's letters
+         * @description With `state=dead`, the letters that were given up. Finished deliveries are kept for 30 days.
          */
         get: operations["list_letters"];
         put?: never;
@@ -565,7 +562,8 @@ export interface paths {
         put?: never;
         /**
          * Send a letter again
-         * @description At once and, if need be, for another day, with the same message id.
+         * @description The letter is sent at once, with the same message id. It is retried for another day if
+         *     necessary.
          */
         post: operations["send_letter_again"];
         delete?: never;
@@ -584,7 +582,7 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Send someone a test
+         * Send a test letter
          * @description It is queued like any other letter.
          */
         post: operations["test_recipient"];
@@ -618,11 +616,11 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** See how you are told */
+        /** See your notification settings */
         get: operations["find_notification_settings"];
         /**
-         * Say how you want to be told
-         * @description What waits to be mailed follows the new settings.
+         * Change your notification settings
+         * @description Notifications that wait for mail follow the new settings.
          */
         put: operations["change_notification_settings"];
         post?: never;
@@ -642,7 +640,7 @@ export interface paths {
         get?: never;
         /**
          * Change your password
-         * @description All your other sessions end. API tokens go on.
+         * @description All your other sessions end. API tokens stay valid.
          */
         put: operations["change_password"];
         post?: never;
@@ -663,7 +661,7 @@ export interface paths {
         put?: never;
         /**
          * Begin to set up a second factor
-         * @description It is asked for from the moment it is confirmed with a first code.
+         * @description It becomes active when it is confirmed with a first code.
          */
         post: operations["begin_second_factor"];
         delete?: never;
@@ -703,7 +701,7 @@ export interface paths {
         put?: never;
         /**
          * Make new recovery codes
-         * @description Those there were work no more.
+         * @description The previous codes stop working.
          */
         post: operations["renew_recovery_codes"];
         delete?: never;
@@ -759,7 +757,7 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * List what you ought to know
+         * List your notifications
          * @description Notifications are kept for 90 days.
          */
         get: operations["list_notifications"];
@@ -782,7 +780,7 @@ export interface paths {
         put?: never;
         /**
          * Mark notifications as read
-         * @description What is read is not told by mail any more.
+         * @description Notifications that have been read are not mailed any more.
          */
         post: operations["mark_notifications_read"];
         delete?: never;
@@ -861,15 +859,15 @@ export interface paths {
         };
         get?: never;
         /**
-         * Have an operator work with a firm
-         * @description For platform admins. From then on the operator may offer the firm its orders.
+         * Engage a firm for an operator
+         * @description For platform admins. From then on the operator may offer its orders to the firm.
          */
         put: operations["engage_firm"];
         post?: never;
         /**
-         * Have an operator work with a firm no more
-         * @description For platform admins. Not while the firm is asked for an order of the operator's or has
-         *     one that is not done: it is cancelled or given back before.
+         * End a firm's engagement by an operator
+         * @description For platform admins. Not while the firm has an open offer or an unfinished order of the
+         *     operator: those are cancelled or given back first.
          */
         delete: operations["dismiss_firm"];
         options?: never;
@@ -904,12 +902,11 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Send a file of the fleet's port calls
-         * @description The first line names the columns: `vessel` (id, IMO number or name), `port`, `eta`,
-         *     `etd`, and if wanted `id`, `berth`, `eta_uncertainty_h`, `etd_uncertainty_h`,
-         *     `berth_heading_deg`. A call is known by its `id`; one without is called after its port
-         *     and ETA. Calls that are over are passed by. The file is taken whole or not at all: 8 MiB and
-         *     50,000 calls at most.
+         * Upload a CSV file of the fleet's port calls
+         * @description The first line names the columns: `vessel` (id, IMO number or name), `port`, `eta`, `etd`, and
+         *     optionally `id`, `berth`, `eta_uncertainty_h`, `etd_uncertainty_h`, `berth_heading_deg`. The `id`
+         *     identifies a call; by default it is made of port and ETA. Past calls are skipped. The file is
+         *     stored whole or not at all. Limits: 8 MiB and 50,000 calls.
          */
         post: operations["upload_fleet_csv"];
         delete?: never;
@@ -927,7 +924,7 @@ export interface paths {
         };
         /**
          * Search for ports
-         * @description From UNECE's list of UN/LOCODEs; names are found with and without accents.
+         * @description Ports are those of UNECE's list of UN/LOCODEs. Accents do not matter.
          */
         get: operations["search_ports"];
         put?: never;
@@ -947,8 +944,8 @@ export interface paths {
         };
         /**
          * Report on the fleet
-         * @description What is due and the greatest deviations are as of now; jobs, and what they saved
-         *     against swinging, of the time asked for.
+         * @description Due dates and greatest deviations are as of now. Jobs, and their savings against swinging, are
+         *     those of the period.
          */
         get: operations["find_report"];
         put?: never;
@@ -966,7 +963,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** A table of the fleet's report as CSV */
+        /** Export a table of the fleet's report as CSV */
         get: operations["report_csv"];
         put?: never;
         post?: never;
@@ -985,7 +982,7 @@ export interface paths {
         };
         /**
          * Print the fleet's report
-         * @description Sheets of A4: what is due soon, the greatest deviations, the jobs, and what they saved.
+         * @description Sheets of A4 with due dates, greatest deviations, jobs and savings.
          */
         get: operations["report_pdf"];
         put?: never;
@@ -1003,12 +1000,12 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** See what reports reckon with */
+        /** See the settings of reports */
         get: operations["find_report_settings"];
         /**
-         * Say what reports reckon with
-         * @description Who is added to `monthly_to` gets the report of the month that goes on, after its end,
-         *     and of each one after it.
+         * Change the settings of reports
+         * @description A recipient added to `monthly_to` gets the report of the current month after its end, and of
+         *     each later one.
          */
         put: operations["set_report_settings"];
         post?: never;
@@ -1043,8 +1040,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * See what the current plan was made from
-         * @description As `binnacle-server schedule --input` reads it, which makes the same plan of it.
+         * See the input of the current plan
+         * @description `binnacle-server schedule --input` makes the same plan of it.
          */
         get: operations["find_input"];
         put?: never;
@@ -1066,8 +1063,8 @@ export interface paths {
         put?: never;
         /**
          * Offer a planned job to its firm
-         * @description Writes a work order for each compass of the job. From then on the plan keeps the job
-         *     where it is unless there is cause. An order that every firm declined is cancelled for it.
+         * @description Creates a work order for each compass of the job. From then on the plan keeps the job in place
+         *     unless there is cause to move it. An order that every firm declined is cancelled.
          */
         post: operations["offer_job"];
         delete?: never;
@@ -1083,13 +1080,13 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** List what is pinned in the schedule */
+        /** List the schedule's pins */
         get: operations["list_pins"];
         put?: never;
         /**
          * Pin a compass's job in the schedule
-         * @description In place of an earlier pin of the compass. It moves only for cause: where the call is
-         *     withdrawn, say, or the firm cannot.
+         * @description Replaces an earlier pin of the compass. The job moves only for cause, for example when the call
+         *     is withdrawn or the firm has no team.
          */
         post: operations["pin"];
         delete?: never;
@@ -1108,7 +1105,7 @@ export interface paths {
         get?: never;
         put?: never;
         post?: never;
-        /** Let a compass's job go where it is best */
+        /** Remove the pin of a compass */
         delete: operations["unpin"];
         options?: never;
         head?: never;
@@ -1156,9 +1153,9 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** See what counts how much in the schedule */
+        /** See the schedule's settings */
         get: operations["find_schedule_settings"];
-        /** Say what counts how much in the schedule */
+        /** Change the schedule's settings */
         put: operations["set_settings"];
         post?: never;
         delete?: never;
@@ -1177,9 +1174,9 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Make the schedule anew, now
-         * @description It is made by itself half a minute after something has changed; this waits for it. When
-         *     nothing has changed within the hour the plan stays as it is.
+         * Make a new schedule now
+         * @description The schedule is made automatically half a minute after a change; this request makes it at once
+         *     and waits for it. Without a change within the hour the plan stays.
          */
         post: operations["solve_schedule"];
         delete?: never;
@@ -1199,15 +1196,15 @@ export interface paths {
         put?: never;
         /**
          * Sign in
-         * @description Answers with a session cookie. Whoever has a second factor and sends no code is
-         *     answered `second-factor-needed` when the password is right, and sends all three. After
-         *     five wrong passwords or codes for an e-mail, each further attempt has to wait, longer
-         *     every time; so it is after fifty from one address.
+         * @description The response sets a session cookie. A user with a second factor who sends no code gets
+         *     `second-factor-needed` if the password is right, and repeats the request with the code.
+         *     After five wrong passwords or codes for an e-mail address, each further attempt has to wait,
+         *     longer every time. The same holds after fifty from one network address.
          */
         post: operations["sign_in"];
         /**
          * Sign out
-         * @description The session ends for good, whoever holds its cookie.
+         * @description The session ends permanently, whoever holds its cookie.
          */
         delete: operations["sign_out"];
         options?: never;
@@ -1243,9 +1240,9 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Come back from the provider
-         * @description With a session the browser goes on to the dashboard; with a second factor, or a reason
-         *     why nobody was signed in, to the sign-in page.
+         * Return from the provider
+         * @description A signed-in browser is redirected to the dashboard. Otherwise it is redirected to the
+         *     sign-in page, which asks for the second factor or shows the reason.
          */
         get: operations["return_from_provider"];
         put?: never;
@@ -1267,7 +1264,7 @@ export interface paths {
         put?: never;
         /**
          * Send the second factor's code after the provider
-         * @description For who has a second factor here, in the browser that came back from the provider.
+         * @description For users with a second factor, in the browser that returned from the provider.
          */
         post: operations["send_code"];
         delete?: never;
@@ -1285,8 +1282,8 @@ export interface paths {
         };
         /**
          * Go to the provider to sign in
-         * @description For browsers: they come back to `/session/provider/callback`. While the provider cannot
-         *     be reached they come to the sign-in page at once, which says so.
+         * @description For browsers. The provider redirects them to `/session/provider/callback`. While the
+         *     provider cannot be reached, they are redirected to the sign-in page, which shows the reason.
          */
         get: operations["go_to_provider"];
         put?: never;
@@ -1339,11 +1336,11 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** See what your operator asks of its people when they sign in */
+        /** Show your operator's sign-in rules */
         get: operations["find_sign_in_rules"];
         /**
-         * Change what your operator asks of its people when they sign in
-         * @description Whoever wants a second factor of others has one.
+         * Change your operator's sign-in rules
+         * @description Only an admin with a second factor may require one of others.
          */
         put: operations["change_sign_in_rules"];
         post?: never;
@@ -1380,7 +1377,7 @@ export interface paths {
         get?: never;
         /**
          * Send a batch
-         * @description Answers when the batch is durable. The same batch again is answered alike.
+         * @description Responds when the batch is durable. The same batch again gets the same response.
          */
         put: operations["put_batch"];
         post?: never;
@@ -1397,7 +1394,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Fetch what the agent lacks */
+        /** Fetch the updates that the agent lacks */
         get: operations["downlink"];
         put?: never;
         post?: never;
@@ -1417,7 +1414,7 @@ export interface paths {
         /** List your API tokens */
         get: operations["list_tokens"];
         put?: never;
-        /** Make an API token */
+        /** Create an API token */
         post: operations["create_token"];
         delete?: never;
         options?: never;
@@ -1454,8 +1451,8 @@ export interface paths {
         put?: never;
         /**
          * Invite a user
-         * @description Give them the link or the code: with it they set a password of their own. It works
-         *     once, for a week.
+         * @description Pass the link or the code on to the user, who sets a password with it. It works once, for a
+         *     week.
          */
         post: operations["invite_user"];
         delete?: never;
@@ -1476,14 +1473,14 @@ export interface paths {
         post?: never;
         /**
          * Remove a user
-         * @description With their sessions and tokens. What they wrote keeps their name.
+         * @description Sessions and tokens are removed too. Entries by the user keep the name.
          */
         delete: operations["remove_user"];
         options?: never;
         head?: never;
         /**
-         * Change a user's name or role, or shut them out
-         * @description Who is shut out is signed out at once. The last admin stays one.
+         * Change a user's name or role, or disable the user
+         * @description A disabled user is signed out at once. The last admin cannot be disabled or demoted.
          */
         patch: operations["change_user"];
         trace?: never;
@@ -1499,8 +1496,8 @@ export interface paths {
         put?: never;
         /**
          * Give a user another one-time code
-         * @description For who let the first one lapse, or forgot the password: it goes on working until
-         *     the code is used. Codes given before work no more.
+         * @description For a user whose code expired or who forgot the password. The password stays valid until the
+         *     code is used. Earlier codes stop working.
          */
         post: operations["invite_again"];
         delete?: never;
@@ -1521,7 +1518,7 @@ export interface paths {
         post?: never;
         /**
          * Remove a user's second factor
-         * @description For who lost telephone and recovery codes.
+         * @description For a user who lost the phone and the recovery codes.
          */
         delete: operations["reset_second_factor"];
         options?: never;
@@ -1565,9 +1562,9 @@ export interface paths {
         options?: never;
         head?: never;
         /**
-         * Amend what is written of a vessel
-         * @description What is left out stays as it is; null takes a value away. Out of service goes only a vessel
-         *     none of whose work orders is under way.
+         * Amend a vessel
+         * @description Absent fields stay as they are; null removes a value. A vessel with a work order under way
+         *     cannot go out of service.
          */
         patch: operations["amend_vessel"];
         trace?: never;
@@ -1602,8 +1599,8 @@ export interface paths {
         post?: never;
         /**
          * Revoke an agent's token
-         * @description What it has sent stays. It goes on sampling, and goes on sending when it is enrolled
-         *     again. Revoking it again changes nothing.
+         * @description Its batches are kept. It continues to sample, and sends again once it is enrolled again.
+         *     Revoking it again changes nothing.
          */
         delete: operations["revoke_agent"];
         options?: never;
@@ -1620,8 +1617,8 @@ export interface paths {
         };
         /**
          * A compass's deviation card as CSV
-         * @description A line for each 15° of compass heading; each says whether it is predicted or verified, by
-         *     which model, and by which work order. Refused as `card.json` is.
+         * @description A line for each 15° of compass heading, with its status, model and work order. Refused as
+         *     `card.json` is.
          */
         get: operations["card_csv"];
         put?: never;
@@ -1641,13 +1638,14 @@ export interface paths {
         };
         /**
          * See a compass's deviation card
-         * @description By the compass's model, at a place and a date. `predicted` until headings at sea have
-         *     verified the adjustment that the model comes from: then `verified`, and `verified` says
-         *     by which order, when, and by how many headings. A change that ends the adjustment's epoch
-         *     ends that too. In no case a certificate. Besides the usual problems: `no-model-yet` (404) where there is no model, also because the
-         *     last one holds no more; and 409 where there is one that makes no card:
-         *     `model-too-old`, `band-too-wide`, `field-too-weak`, `headings-ambiguous` or
-         *     `compass-suspected`.
+         * @description By the compass's model, at a place and a date. It is `predicted` until headings at sea have
+         *     verified the adjustment that the model comes from. Then it is `verified`, and `verified` names
+         *     the order, the time and the number of headings. A change that ends the adjustment's epoch ends
+         *     that too. It is never a certificate.
+         *
+         *     Besides the usual problems: `no-model-yet` (404) without a model, also because the last one is
+         *     withdrawn. `model-too-old`, `band-too-wide`, `field-too-weak`, `headings-ambiguous` or
+         *     `compass-suspected` (409) where the model makes no card.
          */
         get: operations["card_json"];
         put?: never;
@@ -1667,7 +1665,7 @@ export interface paths {
         };
         /**
          * Print a compass's deviation card
-         * @description One sheet of A4, upright; refused as `card.json` is.
+         * @description One sheet of A4 in portrait, refused as `card.json` is.
          */
         get: operations["card_pdf"];
         put?: never;
@@ -1753,8 +1751,8 @@ export interface paths {
         options?: never;
         head?: never;
         /**
-         * Amend what is written of a compass
-         * @description What is left out stays as it is; null takes a value away.
+         * Amend a compass
+         * @description Absent fields stay as they are; null removes a value.
          */
         patch: operations["amend_compass"];
         trace?: never;
@@ -1766,10 +1764,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** See the binnacle that a compass stands in */
+        /** See a compass's binnacle */
         get: operations["find_binnacle"];
         /**
-         * Write the binnacle that a compass stands in
+         * Write a compass's binnacle
          * @description The whole of it: its type, the correctors on board and how they stand. What was
          *     written before stays among its revisions; the same again makes no new one.
          */
@@ -1808,7 +1806,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** List what was written of a compass's binnacle */
+        /** List the revisions of a compass's binnacle */
         get: operations["list_revisions"];
         put?: never;
         post?: never;
@@ -1902,7 +1900,7 @@ export interface paths {
         };
         /**
          * Print a compass's deviation book
-         * @description Sheets of A4, lying; at most 5000 entries.
+         * @description Sheets of A4 in landscape; at most 5000 entries.
          */
         get: operations["book_pdf"];
         put?: never;
@@ -1926,7 +1924,7 @@ export interface paths {
          */
         get: operations["list_logbook"];
         put?: never;
-        /** Report what bears on a vessel's magnetism */
+        /** Report an event that affects a vessel's magnetism */
         post: operations["report_entry"];
         delete?: never;
         options?: never;
@@ -1950,8 +1948,7 @@ export interface paths {
         head?: never;
         /**
          * Amend an entry
-         * @description What is left out stays as it is; null takes a value away. The entry as it was
-         *     is kept among its revisions.
+         * @description Absent fields stay as they are; null removes a value. The earlier revision is kept.
          */
         patch: operations["amend_entry"];
         trace?: never;
@@ -1967,8 +1964,7 @@ export interface paths {
         put?: never;
         /**
          * Withdraw an entry
-         * @description It stays in the logbook, marked, and counts no more. Withdrawing it again
-         *     changes nothing.
+         * @description It stays in the logbook, marked, and no longer counts. Withdrawing it again changes nothing.
          */
         post: operations["withdraw_entry"];
         delete?: never;
@@ -2035,10 +2031,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** See what rules on adjusting ask about a vessel */
+        /** See a vessel's particulars for the rules on adjusting */
         get: operations["find_particulars"];
         /**
-         * Set the facts that rules on adjusting use
+         * Set a vessel's particulars for the rules on adjusting
          * @description A fact that is left out or null is unknown, and binds the vessel: to adjust too early costs a
          *     fee, to adjust too late a detention.
          */
@@ -2076,14 +2072,14 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Read a vessel's port calls as CSV
-         * @description Those that are not over, in the form in which they are sent.
+         * Export a vessel's port calls as CSV
+         * @description Current and future calls, in the format of uploads.
          */
         get: operations["export_csv"];
         put?: never;
         /**
-         * Send a file of a vessel's port calls
-         * @description As for the fleet; rows may leave `vessel` out.
+         * Upload a CSV file of a vessel's port calls
+         * @description The format is the fleet's; the column `vessel` is optional.
          */
         post: operations["upload_csv"];
         delete?: never;
@@ -2102,10 +2098,11 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Send a calendar of a vessel's port calls
-         * @description iCalendar (RFC 5545). A `VEVENT` is a call: `UID` its reference, `DTSTART` and `DTEND` or
-         *     `DURATION` its ETA and ETD, and its port the UN/LOCODE of `X-UNLOCODE`, that or the name in
-         *     `LOCATION`, or without either the UN/LOCODE behind "at" in `SUMMARY`. A cancelled event withdraws its call; events that are over are passed by.
+         * Upload a calendar of a vessel's port calls
+         * @description iCalendar (RFC 5545). Each `VEVENT` is a call: `UID` is its reference, `DTSTART` and `DTEND` or
+         *     `DURATION` are its ETA and ETD. The port is the UN/LOCODE of `X-UNLOCODE`, the UN/LOCODE or name
+         *     in `LOCATION`, or without either the UN/LOCODE after "at" in `SUMMARY`. A cancelled event
+         *     withdraws its call; past events are skipped.
          */
         post: operations["upload_ics"];
         delete?: never;
@@ -2130,8 +2127,8 @@ export interface paths {
         head?: never;
         /**
          * Amend a port call
-         * @description What is left out stays as it is; null takes a value away. The call as it was is kept
-         *     among its revisions.
+         * @description A field that is left out stays; null removes a value. The earlier content is kept among the
+         *     revisions.
          */
         patch: operations["amend_port_call"];
         trace?: never;
@@ -2147,7 +2144,7 @@ export interface paths {
         put?: never;
         /**
          * Withdraw a port call
-         * @description It stays, marked, and counts no more. Withdrawing it again changes nothing.
+         * @description The call is kept, marked as withdrawn, and no longer counts. Withdrawing it again changes nothing.
          */
         post: operations["withdraw_port_call"];
         delete?: never;
@@ -2256,9 +2253,9 @@ export interface paths {
         get: operations["list_webhooks"];
         put?: never;
         /**
-         * Make a webhook
-         * @description The answer shows, this once, the secret that its messages are signed with:
-         *     `Binnacle-Signature: t=SECONDS,v1=HEX`, HMAC-SHA-256 over `SECONDS.BODY`.
+         * Create a webhook
+         * @description The response contains the signing secret, which is never shown again. Messages are signed
+         *     with it: `Binnacle-Signature: t=SECONDS,v1=HEX`, HMAC-SHA-256 over `SECONDS.BODY`.
          */
         post: operations["create_webhook"];
         delete?: never;
@@ -2274,12 +2271,11 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** See a webhook */
+        /** Show a webhook */
         get: operations["find_webhook"];
         /**
          * Change a webhook
-         * @description Its secret stays. While it is not enabled nothing is queued, and what waits goes
-         *     on waiting.
+         * @description Its secret stays. While it is disabled nothing is queued, and pending messages wait.
          */
         put: operations["change_webhook"];
         post?: never;
@@ -2302,7 +2298,7 @@ export interface paths {
         };
         /**
          * List a webhook's deliveries
-         * @description With `state=dead`, the dead letters. What is done with is kept for 30 days.
+         * @description With `state=dead`, the dead letters. Finished deliveries are kept for 30 days.
          */
         get: operations["list_deliveries"];
         put?: never;
@@ -2324,7 +2320,7 @@ export interface paths {
         put?: never;
         /**
          * Send a delivery again
-         * @description At once and, if need be, for another day, with the same id and body.
+         * @description It is sent at once, with the same id and body, and retried for another day if necessary.
          */
         post: operations["send_delivery_again"];
         delete?: never;
@@ -2343,7 +2339,7 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Send a webhook a test
+         * Send a test message to a webhook
          * @description It is queued like any other message.
          */
         post: operations["test_webhook"];
@@ -2365,7 +2361,7 @@ export interface paths {
         put?: never;
         /**
          * Order a compass to be adjusted
-         * @description A compass has one order under way at a time. With an `offer` it is offered to firms at
+         * @description A compass has at most one order under way. An order with an `offer` is offered to firms at
          *     once.
          */
         post: operations["create_work_order"];
@@ -2384,8 +2380,7 @@ export interface paths {
         };
         /**
          * See a work order
-         * @description With all that the next thing to do depends on: the page at the binnacle asks for
-         *     nothing else.
+         * @description Contains everything that the next action depends on.
          */
         get: operations["find_work_order"];
         put?: never;
@@ -2407,8 +2402,8 @@ export interface paths {
         put?: never;
         /**
          * Accept an offer, or a proposal
-         * @description A firm takes the order as it is offered; an operator agrees to what a firm has
-         *     proposed. Of those who accept at once one has it.
+         * @description A firm accepts the order as it was offered; an operator accepts a firm's proposal. Of several
+         *     firms that accept at once, one gets the order.
          */
         post: operations["accept_work_order"];
         delete?: never;
@@ -2427,9 +2422,9 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Send what was read at the berth
-         * @description The unit is named, never guessed. What cannot be true is kept in the log and refused,
-         *     with the mistakes that would explain it.
+         * Send the reading at the berth
+         * @description The unit is named, never guessed. An implausible reading is kept in the log and refused, with
+         *     the mistakes that would explain it.
          */
         post: operations["read_berth"];
         delete?: never;
@@ -2447,7 +2442,7 @@ export interface paths {
         };
         /**
          * See the binnacle of a work order's compass
-         * @description For a firm while the order is open to it and not completed; each time is noted.
+         * @description For a firm while the order is open to it and not completed. Each access is recorded.
          */
         get: operations["find_order_binnacle"];
         put?: never;
@@ -2469,8 +2464,8 @@ export interface paths {
         put?: never;
         /**
          * Cancel a work order
-         * @description For the operator; a firm declines. Correctors that were moved stay as they stand: the binnacle's next revision says so,
-         *     and the logbook has the moment.
+         * @description For the operator; a firm declines instead. Correctors that were moved keep their settings: the
+         *     next revision of the binnacle and an entry in the logbook record them.
          */
         post: operations["cancel_work_order"];
         delete?: never;
@@ -2490,9 +2485,9 @@ export interface paths {
         put?: never;
         /**
          * Close a work order
-         * @description When headings at sea have spoken. One that no headings will be sent for is closed
-         *     `without_verification`: it is `closed_unverified` then, its card stays predicted, and nothing
-         *     says that it was verified.
+         * @description After verification by headings at sea. An order without such headings is closed with
+         *     `without_verification`: its state becomes `closed_unverified`, and its card stays a
+         *     prediction.
          */
         post: operations["close_work_order"];
         delete?: never;
@@ -2512,9 +2507,9 @@ export interface paths {
         put?: never;
         /**
          * Complete an adjustment
-         * @description By the adjuster's name, licence and typed signature. From that moment on the vessel's
-         *     logbook has the adjustment, the ship gets the model that is foretold, and the card is
-         *     a prediction until headings at sea agree.
+         * @description By the adjuster's name, licence and typed signature. From that moment on the logbook contains
+         *     the adjustment, and the vessel receives the predicted model. The card is a prediction until
+         *     headings at sea agree.
          */
         post: operations["complete_work_order"];
         delete?: never;
@@ -2533,8 +2528,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Say how the correctors stand
-         * @description When they stand otherwise than the plan has it, there has to be another plan.
+         * Report the settings of the correctors
+         * @description Settings other than the plan's require a new plan.
          */
         post: operations["set_correctors"];
         delete?: never;
@@ -2554,8 +2549,8 @@ export interface paths {
         put?: never;
         /**
          * Decline an offer, or a proposal
-         * @description A firm will not have the order, or gives it back before it is on board; an operator
-         *     does not agree to what a firm has proposed. The next firm is asked.
+         * @description A firm declines the order, or gives it back before the adjuster is on board; an operator
+         *     declines a firm's proposal. The next firm receives an offer.
          */
         post: operations["decline_work_order"];
         delete?: never;
@@ -2573,7 +2568,7 @@ export interface paths {
         };
         /**
          * Read a work order's log
-         * @description What is between the operator and another firm is withheld from a firm; its hash stays.
+         * @description Exchanges with other firms are withheld from a firm; their hashes stay.
          */
         get: operations["list_entries"];
         put?: never;
@@ -2593,8 +2588,8 @@ export interface paths {
         };
         /**
          * Get the evidence of an adjustment
-         * @description One archive that `binnacle-server verify-evidence` checks, and that says how to check
-         *     it by hand. A prediction, not a certificate.
+         * @description One archive that `binnacle-server verify-evidence` checks, with instructions for a check by
+         *     hand. A prediction, not a certificate.
          */
         get: operations["find_evidence"];
         put?: never;
@@ -2614,13 +2609,13 @@ export interface paths {
         };
         /**
          * List the messages about a work order
-         * @description A firm reads its own only. That the port call has moved is among them, from `Binnacle`.
+         * @description A firm reads its own only. Changes of the port call are among them, from `Binnacle`.
          */
         get: operations["list_messages"];
         put?: never;
         /**
          * Send a message about a work order
-         * @description To the operator, or to a firm that is asked or has the order.
+         * @description To the operator, or to a firm that has been offered the order or has it.
          */
         post: operations["send_message"];
         delete?: never;
@@ -2638,7 +2633,7 @@ export interface paths {
         };
         /**
          * See the model of a work order's compass
-         * @description For a firm while the order is open to it and not completed; each time is noted.
+         * @description For a firm while the order is open to it and not completed. Each access is recorded.
          */
         get: operations["find_model"];
         put?: never;
@@ -2660,7 +2655,8 @@ export interface paths {
         put?: never;
         /**
          * Offer a work order to firms
-         * @description One after the other, or to all at once. Where nobody answers in time the next is asked.
+         * @description One after the other, or to all at once. An offer without an answer lapses, and the next firm
+         *     follows.
          */
         post: operations["offer_work_order"];
         delete?: never;
@@ -2679,8 +2675,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Say that the adjuster is on board
-         * @description The next thing is to read the berth.
+         * Report the adjuster on board
+         * @description The berth reading follows.
          */
         post: operations["go_on_board"];
         delete?: never;
@@ -2700,7 +2696,7 @@ export interface paths {
         put?: never;
         /**
          * Add a photograph
-         * @description The body is the file as it is: JPEG, PNG or WebP, 10 MiB at most.
+         * @description The body is the file itself: JPEG, PNG or WebP, 10 MiB at most.
          */
         post: operations["add_photo"];
         delete?: never;
@@ -2734,8 +2730,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * See what the planner offers
-         * @description From the last reading, and from how the correctors stand now. Nothing is kept.
+         * See the available plans
+         * @description Based on the last reading and the present settings of the correctors. Nothing is stored.
          */
         get: operations["find_plan"];
         put?: never;
@@ -2758,8 +2754,8 @@ export interface paths {
         put?: never;
         /**
          * Propose other terms
-         * @description For a firm that is asked: another fee, time or berth, one of them or all. What it leaves
-         *     out is as it was offered. The operator accepts or declines, with a deadline of its own.
+         * @description For a firm with an open offer: another fee, time or berth, or several of them. Omitted terms
+         *     stay as offered. The operator accepts or declines by a deadline of its own.
          */
         post: operations["propose_terms"];
         delete?: never;
@@ -2776,8 +2772,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * The residuals that an adjustment record foretells, as CSV
-         * @description A line for each place and compass heading, with the 95 % band.
+         * Get the predicted residuals of an adjustment record as CSV
+         * @description One line for each place and compass heading, with the 95 % band.
          */
         get: operations["tabulate_record"];
         put?: never;
@@ -2797,7 +2793,7 @@ export interface paths {
         };
         /**
          * See the adjustment record
-         * @description The very octets that a firm's key signs the hash of.
+         * @description The exact bytes whose hash a firm's key signs.
          */
         get: operations["find_record"];
         put?: never;
@@ -2817,8 +2813,7 @@ export interface paths {
         };
         /**
          * Print the adjustment record
-         * @description The sheets that the evidence holds, drawn from `record.json`. A prediction, not a
-         *     certificate.
+         * @description The sheets of the evidence, drawn from `record.json`. A prediction, not a certificate.
          */
         get: operations["print_record"];
         put?: never;
@@ -2858,7 +2853,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Say something of a work order */
+        /** Remark on a work order */
         post: operations["remark"];
         delete?: never;
         options?: never;
@@ -2876,9 +2871,9 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Ask the firm that has an order for another time
-         * @description For the operator, before the adjuster is on board. What was agreed stands until the firm
-         *     accepts; asked again, the firm answers what was asked last.
+         * Propose another time to the firm that has an order
+         * @description For the operator, before the adjuster is on board. The agreed time stands until the firm
+         *     accepts. A repeated proposal replaces the last one.
          */
         post: operations["propose_retime"];
         delete?: never;
@@ -2897,7 +2892,7 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Agree to another time
+         * Accept another time
          * @description For the firm that has the order.
          */
         post: operations["accept_retime"];
@@ -2917,8 +2912,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Do not agree to another time
-         * @description What was agreed stands. The operator takes its question back in the same way.
+         * Decline another time
+         * @description The agreed time stands. The operator withdraws its proposal in the same way.
          */
         post: operations["decline_retime"];
         delete?: never;
@@ -2937,9 +2932,9 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Send what the magnetometer reads after the steps
-         * @description With it a slip that the berth's heading hides is found: the field shows what the compass
-         *     on one heading cannot. Optional; without it such a slip can only be found at sea.
+         * Send the magnetometer reading after the steps
+         * @description It finds slips that the compass cannot show on the berth's heading. It is optional: without it
+         *     such a slip can only be found at sea.
          */
         post: operations["read_field_again"];
         delete?: never;
@@ -2959,9 +2954,8 @@ export interface paths {
         put?: never;
         /**
          * Sign the record with a firm's key
-         * @description An Ed25519 signature over the 32 octets of `record_sha256`. The order says whose key it
-         *     is when the order's firm has registered it (`/firms/{id}/keys`), and otherwise that the
-         *     key is unknown.
+         * @description An Ed25519 signature over the 32 bytes of `record_sha256`. The order names the owner of a key
+         *     that the order's firm has registered (`/firms/{id}/keys`). Other keys are shown as unknown.
          */
         post: operations["sign_record"];
         delete?: never;
@@ -2980,8 +2974,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Send what the compass reads after a step
-         * @description The step is confirmed, or there is a new plan from what was read.
+         * Send the compass reading after a step
+         * @description The step is confirmed, or a new plan follows from the reading.
          */
         post: operations["read_step"];
         delete?: never;
@@ -3016,8 +3010,8 @@ export interface paths {
         };
         /**
          * Metrics for Prometheus
-         * @description For who sends the token that the server was started with (`BINNACLE_METRICS_TOKEN`); where
-         *     it was started without one, for programs on the same machine.
+         * @description Requires the token that the server was started with (`BINNACLE_METRICS_TOKEN`). Without a
+         *     token, only programs on the same machine may read them.
          */
         get: operations["metrics_page"];
         put?: never;
@@ -3050,22 +3044,22 @@ export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
         /**
-         * @description A code, and the password to be set with it.
+         * @description Code, and the password to be set with it.
          * @example {
          *       "code": "7QWM-0V3N-KX2D-9RTA",
          *       "password": "seven gulls over the quay"
          *     }
          */
         Acceptance: {
-            /** @description As it was given; without regard to case and hyphens. */
+            /** @description Code; case and hyphens do not matter. */
             code: string;
             /**
              * Format: password
-             * @description At least 12 characters; neither common nor easily guessed of you.
+             * @description New password: at least 12 characters, neither common nor easily guessed.
              */
             password: string;
         };
-        /** @description The user who can now sign in. */
+        /** @description User who can now sign in. */
         Accepted: {
             /**
              * @description E-mail address to sign in with.
@@ -3096,22 +3090,22 @@ export interface components {
          * @enum {string}
          */
         AdjustmentCure: "read_again" | "headings_at_sea" | "other_waters" | "after_discharge" | "better_magnetometer" | "another_berth" | "other_correctors" | "alignment" | "swing";
-        /** @description A compass, and when and why it is to be adjusted next. */
+        /** @description Next adjustment of a compass: due date and causes. */
         AdjustmentNeed: {
             /**
              * Format: date
-             * @description The day of the last adjustment on record.
+             * @description Day of the last adjustment on record.
              */
             adjusted_on: string | null;
             /** @description All causes, the earliest first. */
             causes: components["schemas"]["NeedCause"][];
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description Its name. */
+            /** @description Name of the compass. */
             compass_name: string;
             /**
              * Format: date
-             * @description The last day on which it may be adjusted.
+             * @description Last day for the adjustment.
              */
             due_on: string;
             /**
@@ -3122,12 +3116,12 @@ export interface components {
              */
             not_known: string[];
             /**
-             * @description The greatest deviation predicted for the places and days ahead, where the model is
-             *     sure enough to tell.
+             * @description Greatest deviation predicted for each place and day to come, where the model's band is
+             *     narrow enough.
              */
             predicted: components["schemas"]["DeviationAhead"][];
             /**
-             * @description Reason in plain words.
+             * @description Reason of the due date, as a sentence.
              * @example 24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G, read second-hand)
              */
             reason: string;
@@ -3135,28 +3129,28 @@ export interface components {
             urgency: components["schemas"]["Urgency"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description Name of the vessel. */
             vessel_name: string;
         };
         /** @description A page of needs. */
         AdjustmentNeedList: {
-            /** @description The first due first. */
+            /** @description Needs, the first due first. */
             items: components["schemas"]["AdjustmentNeed"][];
             /** @description `after` of the next page. */
             next: string | null;
         };
-        /** @description Why there is no plan, or a reading is not taken. */
+        /** @description Refusal of a reading or a plan. */
         AdjustmentRefusal: {
-            /** @description Mistakes each of which alone would explain it. */
+            /** @description Mistakes, each of which alone would explain it. */
             could_be: string[];
-            /** @description What would cure it, the easiest first. */
+            /** @description Cures, the easiest first. */
             cures: components["schemas"]["AdjustmentCure"][];
             /**
-             * @description In a word.
+             * @description Kind of the refusal.
              * @example inconsistent_berth
              */
             refusal: string;
-            /** @description What is wrong. */
+            /** @description Reason in words. */
             words: string;
         };
         /** @description State of an agent's spool and budget, reported with a batch. */
@@ -3177,7 +3171,7 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description An installation of the agent.
+         * @description Id of an agent installation.
          */
         AgentId: string;
         /** @description Settings of an agent's sampling and sending. */
@@ -3236,7 +3230,7 @@ export interface components {
             compass_name: string;
             /**
              * Format: int64
-             * @description Every batch up to this one is here.
+             * @description Every batch up to this one is stored.
              */
             contiguous_seq: number;
             last_upload_at: components["schemas"]["Time"] | null;
@@ -3257,7 +3251,7 @@ export interface components {
             stream: string;
             /**
              * @description Ten-second windows by outcome: `accepted`, or why they were refused; `thinned` are
-             *     those that were accepted and left out for want of room or budget.
+             *     those that were accepted and then left out by thinning.
              */
             tally: {
                 [key: string]: number;
@@ -3275,7 +3269,7 @@ export interface components {
             acknowledged_at: components["schemas"]["Time"] | null;
             /** @description Name of that person. */
             acknowledged_by: string | null;
-            /** @description That person's note. */
+            /** @description Note of that person. */
             acknowledgement_note: string | null;
             /** @description Advice to the crew and the office. */
             advice: string;
@@ -3327,11 +3321,11 @@ export interface components {
         AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "alignment" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "adjustment_not_confirmed" | "agreed_job_at_risk" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
         /**
          * Format: uuid
-         * @description Something that people must know of.
+         * @description Id of an alert.
          */
         AlertId: string;
         /**
-         * @description Limits of a vessel's alerts. A flag state may ask for others: AMSA and the Marshall Islands
+         * @description Limits of a vessel's alerts. A flag state may require others: AMSA and the Marshall Islands
          *     (MN 2-011-32) have the compass adjusted above 5° on any heading.
          */
         AlertLimits: {
@@ -3455,27 +3449,27 @@ export interface components {
          * @enum {string}
          */
         BarSide: "forward" | "aft";
-        /** @description What a reading told. */
+        /** @description Check of a reading at the berth. */
         BerthCheck: {
             /**
              * Format: double
-             * @description Between the field read and the field expected, degrees.
+             * @description Angle between the field read and the field expected, degrees.
              */
             consistency_deg: number;
             /**
              * Format: double
-             * @description The standard error of that, degrees.
+             * @description Standard error of that angle, degrees.
              */
             consistency_sd_deg: number | null;
             /**
              * Format: double
-             * @description λ, the mean share of the earth's horizontal field that reaches the compass; every
-             *     heading tells it equally well.
+             * @description λ, the mean share of the earth's horizontal field that reaches the compass. Its estimate
+             *     is equally good on every heading.
              */
             lambda: number;
             /**
              * Format: double
-             * @description Its standard error.
+             * @description Standard error of λ.
              */
             lambda_sd: number | null;
             /**
@@ -3483,7 +3477,7 @@ export interface components {
              * @description Magnetic heading at the berth, degrees.
              */
             magnetic_deg: number;
-            /** @description What to make of it: `consistent`, or `loose` where wide errors explain it. */
+            /** @description Verdict: `consistent`, or `loose` where large errors explain the angle. */
             verdict: string;
         };
         /**
@@ -3641,7 +3635,7 @@ export interface components {
              */
             version: number;
         };
-        /** @description The latest revision of a binnacle, in a line. */
+        /** @description Summary of a binnacle's latest revision. */
         BinnacleInShort: {
             /** @description All correctors on board, those in use included. */
             aboard: components["schemas"]["CorrectorsAboard"];
@@ -3665,11 +3659,11 @@ export interface components {
             /** @description The maker's number of this one. */
             serial: string;
         };
-        /** @description A revision of the binnacle that a compass stands in. */
+        /** @description A revision of a compass's binnacle. */
         BinnacleRevision: {
             /** @description Time of the revision. */
             at: components["schemas"]["Time"];
-            /** @description The binnacle, with the correctors on board and how they stand. */
+            /** @description The binnacle, with the correctors on board and their setting. */
             binnacle: components["schemas"]["Binnacle"];
             /** @description Author of the revision. */
             by: string;
@@ -3771,13 +3765,13 @@ export interface components {
              */
             mark_mm: number;
         };
-        /** @description A calendar that programs subscribe to. */
+        /** @description Calendar feed that programs subscribe to. */
         CalendarFeed: {
             /** @description Time of creation. */
             created_at: components["schemas"]["Time"];
             /** @description Name of its creator. */
             created_by: string;
-            /** @description Its id. */
+            /** @description Id of the feed. */
             id: components["schemas"]["FeedId"];
             /**
              * @description Name of the feed.
@@ -3786,9 +3780,9 @@ export interface components {
             name: string;
             vessel_id: components["schemas"]["VesselId"] | null;
         };
-        /** @description A page of calendars. */
+        /** @description A page of calendar feeds. */
         CalendarFeedList: {
-            /** @description In the order in which they were made. */
+            /** @description Feeds, in order of creation. */
             items: components["schemas"]["CalendarFeed"][];
             /** @description `after` of the next page. */
             next: string | null;
@@ -3810,7 +3804,7 @@ export interface components {
         CallBerthHeadingSource: "given" | "read" | "berth" | "port";
         /**
          * Format: uuid
-         * @description A vessel's call at a port.
+         * @description Id of a port call.
          */
         CallId: string;
         /** @description A planned transit. */
@@ -3874,7 +3868,7 @@ export interface components {
             binnacle: string;
             /**
              * Format: int64
-             * @description The revision of the binnacle that says so.
+             * @description The revision of the binnacle behind it.
              * @example 3
              */
             revision: number;
@@ -3945,7 +3939,7 @@ export interface components {
          * @enum {string}
          */
         CardNotRecorded: "correctors" | "degaussing_coils" | "adjuster" | "signature" | "next_due";
-        /** @description Place and time at which a card holds, and the earth's field there. */
+        /** @description CardPlace and time at which a card holds, and the earth's field there. */
         CardPlace: {
             /** @description Time. */
             at: components["schemas"]["Time"];
@@ -3974,7 +3968,7 @@ export interface components {
              */
             variation_deg: number;
             /**
-             * @description The model of the earth's field that says so.
+             * @description The model of the earth's field behind it.
              * @example igrf14
              */
             variation_source: string;
@@ -4025,7 +4019,7 @@ export interface components {
             samples: number;
         };
         /**
-         * @description Status of a card.
+         * @description CardStatus of a card.
          * @enum {string}
          */
         CardStatus: "predicted" | "verified";
@@ -4042,7 +4036,7 @@ export interface components {
             order: components["schemas"]["OrderId"];
             /**
              * Format: double
-             * @description Root mean square of what the headings were off, degrees.
+             * @description Root mean square of the headings' differences from the prediction, degrees.
              * @example 0.4
              */
             rms_deg: number;
@@ -4155,7 +4149,7 @@ export interface components {
              */
             h_nt: number;
         };
-        /** @description Change of what the compass shows, real or apparent. */
+        /** @description Change of the deviation, real or apparent. */
         Change: {
             /** @description Likeliest cause. */
             cause: components["schemas"]["ChangeCause"];
@@ -4208,18 +4202,18 @@ export interface components {
          * @enum {string}
          */
         ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "compass_fault" | "alignment" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown";
-        /** @description A new minimum severity for a recipient. */
+        /** @description New minimum severity of a recipient. */
         ChangedMailRecipient: {
-            /** @description Of alerts as bad as this or worse. */
+            /** @description Minimum severity of the alerts sent. */
             severity: components["schemas"]["Severity"];
         };
         /** @description Change to a notification. */
         ChangedNotification: {
-            /** @description Whether you have read it. */
+            /** @description `true` when you have read it. */
             read: boolean;
         };
         /**
-         * @description Another password.
+         * @description Password change.
          * @example {
          *       "current": "seven gulls over the quay",
          *       "new": "a lantern astern at midnight"
@@ -4228,12 +4222,12 @@ export interface components {
         ChangedPassword: {
             /**
              * Format: password
-             * @description The one you sign in with now.
+             * @description Current password.
              */
             current: string;
             /**
              * Format: password
-             * @description At least 12 characters; neither common nor easily guessed of you.
+             * @description New password: at least 12 characters, neither common nor easily guessed.
              */
             new: string;
         };
@@ -4250,13 +4244,13 @@ export interface components {
             name?: string | null;
             role?: components["schemas"]["FleetRole"] | null;
         };
-        /** @description A plan that was chosen. */
+        /** @description Plan that was chosen. */
         ChosenPlan: {
-            /** @description Which of those that were offered, from 1. */
+            /** @description Number among the plans offered, from 1. */
             chosen: number;
-            /** @description What the adjuster should know of it. */
+            /** @description Notes for the adjuster. */
             notes: string[];
-            /** @description All that were offered, in short. */
+            /** @description All plans offered, in short. */
             offered: components["schemas"]["PlanInShort"][];
             optimality?: components["schemas"]["PlanOptimality"] | null;
             /** @description The plan. */
@@ -4272,7 +4266,7 @@ export interface components {
         };
         /** @description A magnetic compass on board. */
         Compass: {
-            /** @description The binnacle that it stands in: maker, type and number. */
+            /** @description Its binnacle: maker, type and number. */
             binnacle: string | null;
             /** @description Time at which it was entered. */
             created_at: components["schemas"]["Time"];
@@ -4321,7 +4315,7 @@ export interface components {
         CompassClass: "class_a" | "class_b" | "other";
         /**
          * Format: uuid
-         * @description A magnetic element aboard.
+         * @description Id of a compass: one magnetic element on a vessel.
          */
         CompassId: string;
         /** @description A page of compasses. */
@@ -4337,7 +4331,7 @@ export interface components {
          */
         CompassRole: "standard" | "steering" | "transmitting";
         /**
-         * @description The adjuster's word that it is done.
+         * @description Sign-off of an adjustment.
          * @example {
          *       "adjuster_licence": "ES-CA-114",
          *       "adjuster_name": "M. Etxeberria",
@@ -4346,35 +4340,35 @@ export interface components {
          *     }
          */
         Completion: {
-            /** @description The number of their licence. */
+            /** @description Licence number. */
             adjuster_licence: string;
             /** @description The adjuster. */
             adjuster_name: string;
             at?: components["schemas"]["Time"] | null;
-            /** @description Their firm. */
+            /** @description Firm of the adjuster. */
             firm?: string | null;
-            /** @description Their name once more, typed as a signature. */
+            /** @description The adjuster's name once more, typed as a signature. */
             signature: string;
         };
-        /** @description A completion as the log has it. */
+        /** @description Completion of an adjustment. */
         CompletionMade: {
-            /** @description The number of their licence. */
+            /** @description Licence number. */
             adjuster_licence: string;
             /** @description The adjuster. */
             adjuster_name: string;
-            /** @description The moment of the adjustment. */
+            /** @description Time of the adjustment. */
             at: components["schemas"]["Time"];
-            /** @description Their firm. */
+            /** @description Firm of the adjuster. */
             firm: string | null;
-            /** @description The logbook's entry of the adjustment. */
+            /** @description Entry of the adjustment in the logbook. */
             logbook_entry: components["schemas"]["EntryId"];
-            /** @description The same, whole. */
+            /** @description Content of that model. */
             model: components["schemas"]["Model"];
-            /** @description The model that holds from then on, foretold. */
+            /** @description Predicted model that holds from then on. */
             model_id: components["schemas"]["ModelId"];
-            /** @description SHA-256 of the record, hexadecimal: what a firm's key signs. */
+            /** @description SHA-256 of the record, hexadecimal, which a firm's key signs. */
             record_sha256: string;
-            /** @description Their name, typed as a signature. */
+            /** @description The adjuster's name, typed as a signature. */
             signature: string;
         };
         /** @description Place of a corrector. */
@@ -4439,16 +4433,16 @@ export interface components {
             heeling?: components["schemas"]["HeelingSetting"] | null;
             quadrantal?: components["schemas"]["PairSetting"] | null;
         };
-        /** @description How the correctors stand, as someone found or set them. */
+        /** @description Settings of the correctors, as someone found or made them. */
         CorrectorSettings: {
             /**
              * Format: double
-             * @description What the compass reads then, degrees.
+             * @description Compass reading with these settings, degrees.
              */
             compass_deg?: number | null;
-            /** @description Why they do not stand as planned. */
+            /** @description Reason for settings other than planned. */
             note?: string | null;
-            /** @description How each stands. */
+            /** @description Setting of each corrector. */
             setting: components["schemas"]["CorrectorSetting"];
         };
         /** @description Correctors on board, including those in use. */
@@ -4530,7 +4524,7 @@ export interface components {
              */
             samples: number;
         };
-        /** @description A message and what became of it. */
+        /** @description Message and its delivery. */
         Delivery: {
             /**
              * Format: int64
@@ -4542,7 +4536,7 @@ export interface components {
             /** @description Creation time of the message. */
             created_at: components["schemas"]["Time"];
             delivered_at: components["schemas"]["Time"] | null;
-            /** @description The event's id, which a webhook's body names too. */
+            /** @description Id of the event, which the body of a webhook contains too. */
             id: components["schemas"]["DeliveryId"];
             /** @description Subject of the message. */
             kind: components["schemas"]["MessageKind"];
@@ -4550,7 +4544,7 @@ export interface components {
             last_error: string | null;
             /**
              * Format: int64
-             * @description The last answer's HTTP status or SMTP reply code.
+             * @description HTTP status or SMTP reply code of the last response.
              * @example 503
              */
             last_status: number | null;
@@ -4560,14 +4554,14 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description What a receiver is told: the id of the event.
+         * @description Id of a message, the same at each delivery attempt.
          */
         DeliveryId: string;
-        /** @description A page of deliveries. */
+        /** @description Page of deliveries. */
         DeliveryList: {
-            /** @description The newest first. */
+            /** @description Deliveries, newest first. */
             items: components["schemas"]["Delivery"][];
-            /** @description `after` of the next page. */
+            /** @description Value of `after` for the next page. */
             next: string | null;
         };
         /**
@@ -4575,15 +4569,15 @@ export interface components {
          * @enum {string}
          */
         DeliveryState: "pending" | "delivered" | "dead";
-        /** @description The greatest deviation at a place and on a day. */
+        /** @description Greatest deviation predicted at a place for a day. */
         DeviationAhead: {
             /**
              * Format: date
-             * @description On which day.
+             * @description The day.
              */
             on: string;
             /**
-             * @description Place: `here`, a port's name, or a canal's.
+             * @description The place: `here`, a port's name, or a canal's.
              * @example Rotterdam
              */
             place: string;
@@ -4591,7 +4585,7 @@ export interface components {
             side: components["schemas"]["DeviationSide"];
             /**
              * Format: double
-             * @description The largest deviation on any heading, either way, degrees.
+             * @description Largest size of the deviation on any heading, degrees.
              */
             worst_deviation_deg: number;
         };
@@ -4625,7 +4619,7 @@ export interface components {
             compass_deg: number;
             /**
              * Format: double
-             * @description Deviation as it was observed, degrees, east positive.
+             * @description Observed deviation, degrees, east positive.
              * @example 2.3
              */
             deviation_deg: number;
@@ -4655,8 +4649,8 @@ export interface components {
             lon: number;
             /**
              * Format: int64
-             * @description The version of the model that was in force then; none where there was no model yet,
-             *     or it held no more.
+             * @description The version of the model that was in force then; none without a model, or after its
+             *     withdrawal.
              * @example 12
              */
             model_version: number | null;
@@ -4682,7 +4676,7 @@ export interface components {
             time: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description The true heading, with what the vessel's settings have corrected.
+             * @description The true heading, with the corrections of the vessel's settings.
              * @example 95.1
              */
             true_deg: number;
@@ -4716,21 +4710,21 @@ export interface components {
              * @example no coils fitted
              */
             degaussing: string | null;
-            /** @description The model that says so. */
+            /** @description The model behind it. */
             model: components["schemas"]["CardModel"];
             next_due: components["schemas"]["CardNextDue"] | null;
             /** @description Items that belong on a card and are not recorded here: a person must write them. */
             not_recorded: components["schemas"]["CardNotRecorded"][];
             /** @description Notes for the reader, a sentence each; the most pressing first. */
             notes: string[];
-            /** @description Place and time at which it holds. */
+            /** @description CardPlace and time at which it holds. */
             place: components["schemas"]["CardPlace"];
             replaces: components["schemas"]["CardWithdrawn"] | null;
             /** @description By compass heading from 0, each 15°. */
             rows: components["schemas"]["CardRow"][];
             /** @description The status in words, to accompany figures of the card wherever they are shown. */
             statement: string;
-            /** @description Status of the card. */
+            /** @description CardStatus of the card. */
             status: components["schemas"]["CardStatus"];
             unverified_order: components["schemas"]["OrderId"] | null;
             verified: components["schemas"]["CardVerification"] | null;
@@ -4797,7 +4791,7 @@ export interface components {
              * @description Degrees east.
              */
             lon: number;
-            /** @description The model that says so. */
+            /** @description The model behind it. */
             model_id: components["schemas"]["ModelId"];
             /**
              * Format: int64
@@ -4817,7 +4811,7 @@ export interface components {
              */
             z_nt: number;
         };
-        /** @description Time at which a digest is sent, if there is anything in it. */
+        /** @description Time of the digest; an empty one is not sent. */
         Digest: {
             /**
              * @description At this time of day.
@@ -4894,7 +4888,7 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description An entry of a vessel's logbook.
+         * @description Id of an entry in a vessel's logbook.
          */
         EntryId: string;
         /** @description Interval of constant ship's magnetism, but for slow drift. */
@@ -4940,7 +4934,7 @@ export interface components {
         EventKind: "batch" | "model" | "logbook" | "alert" | "work_order" | "port_call" | "schedule" | "need";
         /**
          * Format: uuid
-         * @description A calendar that is read by its secret address.
+         * @description Id of a calendar feed, which is read at a secret address.
          */
         FeedId: string;
         /**
@@ -4953,9 +4947,9 @@ export interface components {
          * @enum {string}
          */
         FieldUnit: "nanotesla" | "microtesla" | "gauss" | "milligauss";
-        /** @description A company that adjusts compasses. */
+        /** @description Company that adjusts compasses. */
         Firm: {
-            /** @description When it was entered here. */
+            /** @description Time of its creation here. */
             created_at: components["schemas"]["Time"];
             /** @description Its id. */
             id: components["schemas"]["FirmId"];
@@ -4967,19 +4961,19 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description A company that adjusts compasses.
+         * @description Id of a firm: a company that adjusts compasses.
          */
         FirmId: string;
         /** @description A public key. */
         FirmKey: {
-            /** @description When it was registered. */
+            /** @description Time of registration. */
             created_at: components["schemas"]["Time"];
-            /** @description Who registered it. */
+            /** @description Author of the registration. */
             created_by: string;
             /** @description Its id. */
             id: components["schemas"]["KeyId"];
             /**
-             * @description What the firm calls it.
+             * @description The firm's name for it.
              * @example Office, 2026
              */
             name: string;
@@ -4987,31 +4981,31 @@ export interface components {
             public_key: string;
             revoked_at: components["schemas"]["Time"] | null;
         };
-        /** @description A page of keys. */
+        /** @description Page of keys. */
         FirmKeyList: {
-            /** @description In the order in which they were registered. */
+            /** @description Keys in the order of their registration. */
             items: components["schemas"]["FirmKey"][];
             /** @description `after` of the next page. */
             next: string | null;
         };
-        /** @description A firm that could not be planned with. */
+        /** @description Firm that could not be planned with. */
         FirmLeftOut: {
             /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
-            /** @description Its name. */
+            /** @description Name of the firm. */
             firm_name: string;
             /** @description Reason. */
             why: string;
         };
-        /** @description A page of firms. */
+        /** @description Page of firms. */
         FirmList: {
-            /** @description In the order in which they were entered. */
+            /** @description Firms in the order of their creation. */
             items: components["schemas"]["Firm"][];
             /** @description `after` of the next page. */
             next: string | null;
         };
         /**
-         * @description On what terms a firm works.
+         * @description Terms of a firm.
          * @example {
          *       "closed": [
          *         "2026-12-25"
@@ -5051,65 +5045,65 @@ export interface components {
          *     }
          */
         FirmTerms: {
-            /** @description Days on which it does not work. */
+            /** @description Days without work. */
             closed?: string[];
             /**
              * Format: double
-             * @description For each compass after the first on the same job, euros.
+             * @description Fee for each further compass on the same job, euros.
              */
             extra_compass_eur?: number;
             /**
              * Format: double
-             * @description The fee for a job, euros.
+             * @description Fee for a job, euros.
              */
             fee_eur: number;
             /**
              * Format: double
-             * @description The hour at which its day begins, in the port's time; 8 if not said.
+             * @description Hour at which its day begins, in the port's time; 8 by default.
              */
             first_hour?: number;
-            /** @description Flags that accept its adjusters, ISO 3166; all, where it is empty. */
+            /** @description Flags that accept its adjusters, ISO 3166; all, if empty. */
             flags?: string[];
             /**
              * Format: int32
-             * @description Jobs that a team does on one day in one port; 1 if not said.
+             * @description Jobs of a team on one day in one port; 1 by default.
              */
             jobs_a_team_day?: number;
             /**
              * Format: double
-             * @description The hour at which its day ends; 18 if not said.
+             * @description Hour at which its day ends; 18 by default.
              */
             last_hour?: number;
             /**
              * Format: double
-             * @description Hours from being asked to the beginning of the job.
+             * @description Notice before a job, hours.
              */
             lead_time_h?: number;
-            /** @description Licences that it holds. */
+            /** @description Licences held. */
             licences?: string[];
-            /** @description The ports it serves, UN/LOCODE, with what a team's day there costs in travel. */
+            /** @description Ports served, UN/LOCODE, with the travel cost of a team's day there. */
             ports?: components["schemas"]["ServedPort"][];
             /**
              * Format: int32
-             * @description Teams that it has for you on a working day; 1 if not said.
+             * @description Teams for you on a working day; 1 by default.
              */
             teams?: number;
-            /** @description Days of the week on which it works, as `Mon`; Monday to Friday if not said. */
+            /** @description Working days of the week, as `Mon`; Monday to Friday by default. */
             working_days?: string[];
         };
-        /** @description All firms that an operator works with. */
+        /** @description All firms that work for an operator. */
         FirmTermsList: {
-            /** @description In the order in which they were entered. */
+            /** @description Firms in the order of their creation. */
             items: components["schemas"]["FirmWithTerms"][];
         };
-        /** @description A firm that an operator works with, and on what terms. */
+        /** @description Firm that works for an operator, with its terms. */
         FirmWithTerms: {
             /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
             /** @description Its name. */
             firm_name: string;
             /**
-             * @description Why the schedule leaves the firm out; empty when it does not.
+             * @description Reasons for which the schedule leaves the firm out; empty when it does not.
              * @example [
              *       "working_days: a firm that works on no day of the week serves nobody"
              *     ]
@@ -5135,7 +5129,7 @@ export interface components {
             /** @description Summary, in a sentence. */
             summary: string;
         };
-        /** @description A compass of the fleet's, and what it stands in. */
+        /** @description A compass of the fleet, with its binnacle. */
         FleetBinnacle: {
             binnacle: components["schemas"]["BinnacleInShort"] | null;
             /** @description The compass's id. */
@@ -5158,7 +5152,7 @@ export interface components {
         };
         /** @description Quality of a model, in short. */
         FleetModel: {
-            /** @description For how many reasons it should not be trusted everywhere. */
+            /** @description Number of reasons for which it should not be trusted everywhere. */
             cautions: number;
             /** @description The time of the last sample in it. */
             data_until: components["schemas"]["Time"];
@@ -5175,21 +5169,18 @@ export interface components {
         };
         /** @description Report on a fleet: due dates, deviations and completed work. */
         FleetReport: {
-            /** @description Their compasses. */
+            /** @description Number of their compasses. */
             compasses: number;
-            /**
-             * @description The greatest deviation of each compass, the greatest first; those of which nothing
-             *     is known last.
-             */
+            /** @description Greatest deviation of each compass, the largest first and unknown ones last. */
             deviation: components["schemas"]["ReportDeviation"][];
-            /** @description Every compass that is due some day, the first due first. */
+            /** @description Every compass with a due date, the earliest first. */
             due: components["schemas"]["ReportDue"][];
             /**
              * Format: date
-             * @description The first day of the time that jobs are counted in, UTC.
+             * @description First day of the period in which jobs are counted, UTC.
              */
             from: string;
-            /** @description Adjustments that were completed in the time, in order. */
+            /** @description Adjustments completed in the period, in order. */
             jobs: components["schemas"]["ReportJob"][];
             /** @description Time of the report; due dates and deviations are as of then. */
             made_at: components["schemas"]["Time"];
@@ -5202,10 +5193,10 @@ export interface components {
             saved: components["schemas"]["ReportSaved"];
             /**
              * Format: date
-             * @description The last.
+             * @description Last day of the period, UTC.
              */
             to: string;
-            /** @description Vessels in the fleet. */
+            /** @description Number of vessels in the fleet. */
             vessels: number;
         };
         /**
@@ -5468,7 +5459,7 @@ export interface components {
             constant_deg: boolean;
         };
         /**
-         * @description With this someone sets a password.
+         * @description Invitation to set a password.
          * @example {
          *       "code": "7QWM-0V3N-KX2D-9RTA",
          *       "expires_at": "2026-11-28T07:00:00Z",
@@ -5476,19 +5467,19 @@ export interface components {
          *     }
          */
         Invitation: {
-            /** @description Works once and is never shown again. */
+            /** @description One-time code; never shown again. */
             code: string;
             /** @description Expiry time. */
             expires_at: components["schemas"]["Time"];
             /**
-             * @description Link for its use, if the server knows its public address. The part after the # is sent to
-             *     no server and appears in no log.
+             * @description Link to the page that uses the code, if the server knows its public address. The part
+             *     after the # is sent to no server and appears in no log.
              */
             link: string | null;
         };
-        /** @description A user who was invited, and how. */
+        /** @description Invited user, with the invitation. */
         InvitedUser: {
-            /** @description The invitation to pass on. */
+            /** @description Invitation to pass on. */
             invitation: components["schemas"]["Invitation"];
             /** @description The user. */
             user: components["schemas"]["User"];
@@ -5517,18 +5508,18 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description A public key that a firm signs with.
+         * @description Id of a public key with which a firm signs.
          */
         KeyId: string;
-        /** @description A key that a firm had registered when it signed. */
+        /** @description Key that a firm had registered at the time of the signature. */
         KnownKey: {
             /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
-            /** @description The firm's name then. */
+            /** @description The firm's name at that time. */
             firm_name: string;
             /** @description The key's id. */
             id: components["schemas"]["KeyId"];
-            /** @description What the firm calls it. */
+            /** @description The firm's name for it. */
             name: string;
         };
         /** @description Last known position of a vessel. */
@@ -5546,7 +5537,7 @@ export interface components {
              */
             lon: number;
         };
-        /** @description A compass that is due after the horizon. */
+        /** @description Compass that is due after the horizon. */
         LaterNeed: components["schemas"]["PlannedCompass"] & {
             /**
              * Format: date
@@ -5557,7 +5548,7 @@ export interface components {
             reason: string;
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description Name of the vessel. */
             vessel_name: string;
         };
         /** @description Band in some waters, with suggestions that narrow it. */
@@ -5610,7 +5601,7 @@ export interface components {
         LinkWeek: {
             /**
              * Format: int64
-             * @description Batches that came.
+             * @description Batches received.
              */
             batches: number;
             /**
@@ -5703,20 +5694,20 @@ export interface components {
             port?: string | null;
             to?: components["schemas"]["Time"] | null;
         };
-        /** @description A calendar just made. */
+        /** @description Calendar feed just created. */
         MadeCalendarFeed: components["schemas"]["CalendarFeed"] & {
             /**
-             * @description The address to subscribe to: whoever has it reads the calendar. Never shown again.
+             * @description Secret address to subscribe to, which gives access to the calendar. It is shown once.
              * @example https://binnacle.example.com/api/v1/calendar.ics?token=bnc_mZ3q8k…
              */
             url: string;
         };
-        /** @description A token just made. */
+        /** @description Newly created token. */
         MadeToken: components["schemas"]["Token"] & {
-            /** @description The secret, to be sent as `Authorization: Bearer …`; never shown again. */
+            /** @description Secret, to be sent as `Authorization: Bearer …`; never shown again. */
             token: string;
         };
-        /** @description A webhook just made. */
+        /** @description Newly created webhook. */
         MadeWebhook: components["schemas"]["Webhook"] & {
             /**
              * @description Signing secret of its messages; never shown again.
@@ -5826,7 +5817,7 @@ export interface components {
             /** @description Direction of the red, north-seeking ends. */
             red: components["schemas"]["RedEnd"];
         };
-        /** @description Someone who gets mail. */
+        /** @description Mail recipient. */
         MailRecipient: {
             /**
              * @description E-mail address of the recipient.
@@ -5837,29 +5828,29 @@ export interface components {
             created_at: components["schemas"]["Time"];
             /**
              * Format: int64
-             * @description Letters that were given up.
+             * @description Number of letters that were given up.
              */
             dead: number;
             /** @description The recipient's id. */
             id: components["schemas"]["RecipientId"];
             /**
              * Format: int64
-             * @description Letters that wait.
+             * @description Number of pending letters.
              */
             pending: number;
-            /** @description Of alerts as bad as this or worse. */
+            /** @description Minimum severity of the alerts sent. */
             severity: components["schemas"]["Severity"];
         };
-        /** @description A page of those who get mail. */
+        /** @description Page of mail recipients. */
         MailRecipientList: {
-            /** @description In the order in which they were added. */
+            /** @description Recipients in the order in which they were added. */
             items: components["schemas"]["MailRecipient"][];
-            /** @description `after` of the next page. */
+            /** @description Value of `after` for the next page. */
             next: string | null;
             /** @description True if mail is set up on this server. */
             sending: boolean;
         };
-        /** @description A user, as `/me` shows it. */
+        /** @description User, as `/me` shows it. */
         Me: {
             /** @description E-mail address used to sign in. */
             email: string;
@@ -5940,10 +5931,10 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description A version of a compass's model.
+         * @description Id of a version of a compass's model.
          */
         ModelId: string;
-        /** @description A model in a line. */
+        /** @description Summary of a model. */
         ModelSummary: {
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
@@ -5969,7 +5960,7 @@ export interface components {
              */
             version: number;
         };
-        /** @description A model version, whole. */
+        /** @description A whole model version. */
         ModelVersion: {
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
@@ -6033,12 +6024,12 @@ export interface components {
         NeedCause: {
             /**
              * Format: date
-             * @description By when it wants the compass adjusted.
+             * @description Due date by this cause.
              */
             due_on: string;
             /** @description Kind of cause. */
             kind: components["schemas"]["NeedCauseKind"];
-            /** @description In words. */
+            /** @description Reason, as a sentence. */
             reason: string;
             rule: components["schemas"]["RuleCited"] | null;
         };
@@ -6047,13 +6038,13 @@ export interface components {
          * @enum {string}
          */
         NeedCauseKind: "never_adjusted" | "interval" | "event" | "over_limit" | "transit" | "change" | "failed_verification";
-        /** @description A compass whose order is under way beside the plan. */
+        /** @description Compass whose order is under way beside the plan. */
         NeedUnderWay: components["schemas"]["PlannedCompass"] & {
             /** @description The order. */
             order_id: components["schemas"]["OrderId"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description Name of the vessel. */
             vessel_name: string;
             /** @description Reason why it is beside the plan. */
             why: string;
@@ -6066,7 +6057,7 @@ export interface components {
             count: number;
         };
         /**
-         * @description A calendar to be made.
+         * @description Calendar feed to create.
          * @example {
          *       "name": "Our fleet"
          *     }
@@ -6099,7 +6090,7 @@ export interface components {
         };
         /** @description A compass to be entered. */
         NewCompass: {
-            /** @description The binnacle that it stands in: maker, type and number. */
+            /** @description Its binnacle: maker, type and number. */
             binnacle?: string | null;
             /** @description Maker and type. */
             make?: string | null;
@@ -6114,10 +6105,10 @@ export interface components {
         NewEntry: components["schemas"]["LogbookReport"] & {
             compass_id?: components["schemas"]["CompassId"] | null;
         };
-        /** @description A key to be registered. */
+        /** @description Key to register. */
         NewFirmKey: {
             /**
-             * @description What the firm calls it.
+             * @description The firm's name for it.
              * @example Office, 2026
              */
             name: string;
@@ -6129,18 +6120,18 @@ export interface components {
             /** @description Ed25519 (RFC 8032), 64 hexadecimal digits. */
             public_key: string;
         };
-        /** @description Someone who is to get mail. */
+        /** @description Mail recipient to be added. */
         NewMailRecipient: {
             /**
              * @description E-mail address of the recipient.
              * @example superintendent@example.com
              */
             address: string;
-            /** @description Of alerts as bad as this or worse; `warning` if not said. */
+            /** @description Minimum severity of the alerts sent; `warning` by default. */
             severity?: components["schemas"]["Severity"];
         };
         /**
-         * @description An order to be offered to firms.
+         * @description Request to offer an order to firms.
          * @example {
          *       "answer_within_hours": 48,
          *       "firms": [
@@ -6151,29 +6142,29 @@ export interface components {
         NewOffer: {
             /**
              * Format: int32
-             * @description So long each has for an answer, 1 to 720 hours; then the next is asked.
+             * @description Time for an answer, 1 to 720 hours; then the next firm follows.
              */
             answer_within_hours?: number;
-            /** @description Ask all of them at once: the first to accept has it. */
+            /** @description Offer to all of them at once: the first to accept gets the order. */
             at_once?: boolean;
-            /** @description The firms, in the order in which they are asked: 1 to 20 that you work with. */
+            /** @description Firms in the order of the offers: 1 to 20 that work for you. */
             firms: components["schemas"]["FirmId"][];
-            /** @description What is said to them. */
+            /** @description Text for the firms. */
             text?: string | null;
         };
         /**
-         * @description A message to be sent.
+         * @description Message to send.
          * @example {
          *       "text": "Is the gangway to port?"
          *     }
          */
         NewOrderMessage: {
             firm_id?: components["schemas"]["FirmId"] | null;
-            /** @description In words, 2,000 characters at most. */
+            /** @description Text, 2,000 characters at most. */
             text: string;
         };
         /**
-         * @description A place and day that a person wants for a compass.
+         * @description Firm, port call and day to fix for a compass.
          * @example {
          *       "call_id": "0199aa00-0000-7000-8000-000000000004",
          *       "compass_id": "0199aa00-0000-7000-8000-000000000002",
@@ -6183,22 +6174,22 @@ export interface components {
          *     }
          */
         NewPin: {
-            /** @description At this call of its vessel. */
+            /** @description Port call of its vessel. */
             call_id: components["schemas"]["CallId"];
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
             /**
              * Format: date
-             * @description On this day, in the port's time.
+             * @description The day, in the port's time.
              */
             day: string;
-            /** @description By this firm. */
+            /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
             /** @description Note, such as the reason. */
             note?: string | null;
         };
         /**
-         * @description A call to be entered.
+         * @description Port call to enter.
          * @example {
          *       "berth": "Maasvlakte 3",
          *       "eta": "2026-12-08T06:00:00Z",
@@ -6212,21 +6203,21 @@ export interface components {
             berth?: string | null;
             /**
              * Format: double
-             * @description Her true heading alongside, where it is known.
+             * @description True heading of the vessel alongside, where known.
              */
             berth_heading_deg?: number | null;
             /** @description Expected arrival alongside, with a time zone. */
             eta: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description She comes within so many hours of that, nineteen times in twenty.
+             * @description Uncertainty of the arrival, hours: 95 % of arrivals lie within it.
              */
             eta_uncertainty_h?: number;
-            /** @description Expected departure, 120 days later at most. */
+            /** @description Expected departure, at most 120 days after arrival. */
             etd: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description She leaves within so many hours of that, nineteen times in twenty.
+             * @description Uncertainty of the departure, hours: 95 % of departures lie within it.
              */
             etd_uncertainty_h?: number;
             /**
@@ -6238,7 +6229,7 @@ export interface components {
             reference?: string | null;
         };
         /**
-         * @description Another time for an order that a firm has.
+         * @description Proposal of another time.
          * @example {
          *       "answer_within_hours": 24,
          *       "terms": {
@@ -6250,12 +6241,12 @@ export interface components {
         NewRetime: {
             /**
              * Format: int32
-             * @description So long the firm has for an answer, 1 to 720 hours; what was agreed stands after it.
+             * @description Time for an answer, 1 to 720 hours; the agreed time stands after it.
              */
             answer_within_hours?: number;
-            /** @description The time, and the berth if another. */
+            /** @description Time, and berth if another. */
             terms: components["schemas"]["WorkOrderTerms"];
-            /** @description In words. */
+            /** @description Text. */
             text?: string | null;
         };
         /**
@@ -6270,22 +6261,22 @@ export interface components {
         NewScheduleOffer: {
             /**
              * Format: int32
-             * @description So long the firm has for an answer, 1 to 720 hours; 48 if not said.
+             * @description Time for the firm to reply, 1 to 720 hours; 48 by default.
              */
             answer_within_hours?: number | null;
-            /** @description A compass of the job; its others go with it. */
+            /** @description A compass of the job; the job's other compasses are offered too. */
             compass_id: components["schemas"]["CompassId"];
             /** @description Message to the firms. */
             text?: string | null;
-            /** @description Firms that are asked next, in this order, when it says no or nothing. */
+            /** @description Firms to offer it to next, in this order, when the firm declines or does not reply. */
             then?: components["schemas"]["FirmId"][];
             /**
              * Format: int64
-             * @description The plan that was looked at: another one may say something else.
+             * @description Version of the plan that the offer is based on; a newer one may differ.
              */
             version: number;
         };
-        /** @description A token to be made. */
+        /** @description Token to be created. */
         NewToken: {
             expires_at?: components["schemas"]["Time"] | null;
             /** @description Purpose of the token. */
@@ -6294,7 +6285,7 @@ export interface components {
             scope: components["schemas"]["TokenScope"];
         };
         /**
-         * @description Someone to be invited.
+         * @description User to be invited.
          * @example {
          *       "email": "ada@example.com",
          *       "name": "Ada Lovelace",
@@ -6328,7 +6319,7 @@ export interface components {
             /** @description Its name. */
             name: string;
         };
-        /** @description A webhook to be made, or as it is to be. */
+        /** @description Webhook to be created or changed. */
         NewWebhook: {
             /** @description True if messages are sent; true by default. */
             enabled?: boolean;
@@ -6347,7 +6338,7 @@ export interface components {
             url: string;
         };
         /**
-         * @description An order to be written.
+         * @description Request for a new order.
          * @example {
          *       "adjuster_licence": "ES-CA-114",
          *       "adjuster_name": "M. Etxeberria",
@@ -6360,26 +6351,26 @@ export interface components {
          *     }
          */
         NewWorkOrder: {
-            /** @description The number of their licence. */
+            /** @description Licence number. */
             adjuster_licence?: string | null;
-            /** @description Who is to do it. */
+            /** @description Adjuster. */
             adjuster_name?: string | null;
             /** @description The berth. */
             berth?: string | null;
-            /** @description One of her compasses. */
+            /** @description One of its compasses. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description Their firm. */
+            /** @description Firm of the adjuster. */
             firm?: string | null;
             limits?: components["schemas"]["PlanLimits"] | null;
             offer?: components["schemas"]["NewOffer"] | null;
-            /** @description When it is to be done. */
+            /** @description Time of the job. */
             planned_at: components["schemas"]["Time"];
             /** @description The port. */
             port: string;
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
         };
-        /** @description A port call, in short, and what awaits the compass there. */
+        /** @description A port call in short, with the worst heading there. */
         NextCall: {
             /** @description Time of arrival. */
             eta: components["schemas"]["Time"];
@@ -6391,7 +6382,7 @@ export interface components {
             port_name: string;
             worst: components["schemas"]["WorstHeading"] | null;
         };
-        /** @description Something that you ought to know. */
+        /** @description Notification of an event that concerns you. */
         Notification: {
             alert_id: components["schemas"]["AlertId"] | null;
             /** @description Time of the event. */
@@ -6402,25 +6393,25 @@ export interface components {
             kind: components["schemas"]["NotificationKind"];
             order_id: components["schemas"]["OrderId"] | null;
             /**
-             * @description The dashboard's page to look at.
+             * @description Page of the dashboard that shows it.
              * @example /work-orders/0199aa00-0000-7000-8000-000000000001
              */
             path: string;
             read_at: components["schemas"]["Time"] | null;
             /**
-             * @description In a line.
+             * @description Subject line.
              * @example Nao Victoria: Nervión Compass accepts the adjustment at Bilbao
              */
             subject: string;
-            /** @description Full text, as in the letter. */
+            /** @description Full text, as in mail. */
             text: string;
-            /** @description Whether its mail skips quiet hours and digests. */
+            /** @description `true` when its mail skips quiet hours and digests. */
             urgent: boolean;
             vessel_id: components["schemas"]["VesselId"] | null;
         };
         /**
          * Format: uuid
-         * @description Something that a person is told.
+         * @description Id of a notification to a person.
          */
         NotificationId: string;
         /**
@@ -6466,7 +6457,7 @@ export interface components {
             digest?: components["schemas"]["Digest"];
             quiet_hours: components["schemas"]["QuietHours"] | null;
             /**
-             * @description The time zone by its IANA name; UTC if not said.
+             * @description IANA name of the time zone; UTC by default.
              * @example Europe/Madrid
              */
             time_zone?: string;
@@ -6478,17 +6469,17 @@ export interface components {
         /** @description Notification settings in force. */
         NotificationSettingsInForce: {
             /**
-             * @description Address for mail: the one you sign in with.
+             * @description Address for mail, with which you sign in.
              * @example ada@example.com
              */
             address: string;
-            /** @description Time of the next digest, if there is anything in it. */
+            /** @description Time of the next digest; an empty one is not sent. */
             next_digest_at: components["schemas"]["Time"];
-            /** @description Whether this server is set up to send mail. */
+            /** @description `true` when this server is set up to send mail. */
             sending: boolean;
             /** @description Your settings. */
             settings: components["schemas"]["NotificationSettings"];
-            /** @description Every kind that you are told of, with the way in force. */
+            /** @description Every kind that concerns you, with its way of delivery. */
             ways: {
                 [key: string]: components["schemas"]["NotificationWay"];
             };
@@ -6516,7 +6507,7 @@ export interface components {
             number: number;
         };
         /**
-         * @description A yes or a no.
+         * @description Acceptance or refusal.
          * @example {
          *       "adjuster_licence": "ES-CA-114",
          *       "adjuster_name": "M. Etxeberria",
@@ -6524,16 +6515,16 @@ export interface components {
          *     }
          */
         OfferAnswer: {
-            /** @description The number of their licence. */
+            /** @description Licence number. */
             adjuster_licence?: string | null;
-            /** @description Who will come, where a firm accepts. */
+            /** @description Name of the adjuster, where a firm accepts. */
             adjuster_name?: string | null;
             firm_id?: components["schemas"]["FirmId"] | null;
-            /** @description In words. */
+            /** @description Text. */
             text?: string | null;
         };
         /**
-         * @description Other terms than were offered.
+         * @description Proposal of other terms than offered.
          * @example {
          *       "terms": {
          *         "fee_eur": 900,
@@ -6543,25 +6534,25 @@ export interface components {
          *     }
          */
         OfferProposal: {
-            /** @description The terms: what is left out is as it was offered. */
+            /** @description Terms: omitted ones stay as offered. */
             terms: components["schemas"]["ProposedTerms"];
-            /** @description In words. */
+            /** @description Text. */
             text?: string | null;
         };
         /**
-         * @description How an offer to a firm stands.
+         * @description State of an offer to a firm.
          * @enum {string}
          */
         OfferState: "waiting" | "open" | "proposed" | "accepted" | "declined" | "lapsed" | "withdrawn";
         /**
-         * @description When the adjuster went on board.
+         * @description Arrival of the adjuster on board.
          * @example {
          *       "text": "Gangway on the starboard side."
          *     }
          */
         OnBoard: {
             at?: components["schemas"]["Time"] | null;
-            /** @description In words. */
+            /** @description Text. */
             text?: string | null;
         };
         /**
@@ -6590,7 +6581,7 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description A company with a fleet.
+         * @description Id of an operator: a company with a fleet.
          */
         OperatorId: string;
         /** @description A page of operators. */
@@ -6601,57 +6592,57 @@ export interface components {
             next: string | null;
         };
         /**
-         * @description How an order is closed.
+         * @description Request to close an order.
          * @example {
          *       "text": "Papers are filed."
          *     }
          */
         OrderClosing: {
-            /** @description Why, in words. */
+            /** @description Reason. */
             text: string;
             /**
-             * @description Close it though no headings at sea have spoken, as of a ship that sends no more. What
-             *     was foretold stays foretold.
+             * @description Closes the order although no headings at sea verified it, for a vessel that sends no more
+             *     data. Predictions stay predictions.
              */
             without_verification?: boolean;
         };
         /**
          * Format: uuid
-         * @description An order to adjust a compass.
+         * @description Id of a work order.
          */
         OrderId: string;
-        /** @description A message. */
+        /** @description Message about an order. */
         OrderMessage: {
-            /** @description When it was sent. */
+            /** @description Time of sending. */
             at: components["schemas"]["Time"];
-            /** @description Who sent it. */
+            /** @description Name of the sender. */
             by: string;
             /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
             /** @description Its name. */
             firm_name: string;
-            /** @description Whether someone of the firm's sent it, rather than of the operator's. */
+            /** @description True if the firm sent it, false if the operator did. */
             from_firm: boolean;
             /**
              * Format: int64
-             * @description Its number in the order's log.
+             * @description Number in the order's log.
              */
             seq: number;
-            /** @description In words. */
+            /** @description Text. */
             text: string;
         };
-        /** @description A page of messages. */
+        /** @description Page of messages. */
         OrderMessageList: {
-            /** @description The oldest first. */
+            /** @description Messages, the oldest first. */
             items: components["schemas"]["OrderMessage"][];
             /** @description `after` of the next page. */
             next: string | null;
         };
-        /** @description A photograph as the log has it. */
+        /** @description Photograph of an order. */
         OrderPhoto: {
-            /** @description How large it is. */
+            /** @description Size, bytes. */
             bytes: number;
-            /** @description What it shows. */
+            /** @description Caption. */
             caption: string | null;
             /** @description `image/jpeg`, `image/png` or `image/webp`. */
             media_type: string;
@@ -6661,24 +6652,24 @@ export interface components {
             sha256: string;
         };
         /**
-         * @description Something to be said of an order.
+         * @description Request for a remark, or for a cancellation with its reason.
          * @example {
          *       "text": "Crane alongside until noon."
          *     }
          */
         OrderRemark: {
-            /** @description In words. */
+            /** @description Text of the remark. */
             text: string;
         };
-        /** @description What the headings at sea say. */
+        /** @description Verification of an adjustment by headings at sea. */
         OrderVerification: {
-            /** @description How many samples it rests on. */
+            /** @description Number of samples. */
             samples: number;
-            /** @description The time of the last of them. */
+            /** @description Time of the last sample. */
             until: components["schemas"]["Time"];
             /** @description The verdict with its figures: `passed`, `more_needed` or `alarm`. */
             verification: components["schemas"]["SeaVerdict"];
-            /** @description The same in words. */
+            /** @description The verdict in words. */
             words: string;
         };
         /** @description A pair of spheres, boxes or plates. */
@@ -6743,7 +6734,7 @@ export interface components {
             chi23: number;
         };
         /**
-         * @description The password once more.
+         * @description Confirmation by password.
          * @example {
          *       "password": "seven gulls over the quay"
          *     }
@@ -6751,18 +6742,18 @@ export interface components {
         PasswordAgain: {
             /**
              * Format: password
-             * @description The one you sign in with.
+             * @description Password that you sign in with.
              */
             password: string;
         };
         /**
          * Format: uuid
-         * @description A photograph in an order.
+         * @description Id of a photograph of a work order.
          */
         PhotoId: string;
         /** @description Pin of a compass's job, set by a person. */
         Pin: {
-            /** @description At this call. */
+            /** @description The port call. */
             call_id: components["schemas"]["CallId"];
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
@@ -6772,10 +6763,10 @@ export interface components {
             created_by: string;
             /**
              * Format: date
-             * @description On this day.
+             * @description The day.
              */
             day: string;
-            /** @description By this firm. */
+            /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
             /** @description Note, such as the reason. */
             note: string | null;
@@ -6784,26 +6775,26 @@ export interface components {
         };
         /** @description All pins. */
         PinList: {
-            /** @description By vessel and compass. */
+            /** @description Pins, in order of vessel and compass. */
             items: components["schemas"]["Pin"][];
         };
         /** @description Comparison of a plan with the previous one. */
         PlanAgainst: {
             /**
              * Format: double
-             * @description Extra cost by the weights; negative where this plan costs less.
+             * @description Extra cost by the weights; negative when this plan costs less.
              */
             cost_eur: number;
             /** @description Number of the previous plan's jobs that moved or were dropped. */
             moved: number;
             /**
              * Format: double
-             * @description Extra payments.
+             * @description Extra fees and travel, euros.
              */
             paid_eur: number;
             /**
              * Format: int64
-             * @description The plan before.
+             * @description Version of the previous plan.
              */
             version: number;
         };
@@ -6815,7 +6806,7 @@ export interface components {
             to: components["schemas"]["PlanPlace"] | null;
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description Name of the vessel. */
             vessel_name: string;
             /** @description Kind of change. */
             what: components["schemas"]["PlanChangeKind"];
@@ -6828,30 +6819,30 @@ export interface components {
          */
         PlanChangeKind: "kept" | "moved" | "new" | "dropped";
         /**
-         * @description Which plan.
+         * @description Choice of a plan.
          * @example {
          *       "plan": 1
          *     }
          */
         PlanChoice: {
-            /** @description Which of those that are offered, from 1: the recommended one where it is not said. */
+            /** @description Number of the plan among those offered, from 1; the recommended one by default. */
             plan?: number | null;
         };
-        /** @description A plan in short. */
+        /** @description Summary of a plan. */
         PlanInShort: {
             /**
              * Format: int32
-             * @description Movements of hand that it takes.
+             * @description Number of corrector moves.
              */
             moves: number;
             /**
              * Format: double
-             * @description The widest 95 % band, degrees.
+             * @description Widest 95 % band, degrees.
              */
             widest_band_deg: number;
             /**
              * Format: double
-             * @description Worst foretold residual, weighted over the waters, degrees.
+             * @description Worst predicted residual, weighted over the waters, degrees.
              */
             worst_residual_deg: number;
         };
@@ -6928,23 +6919,23 @@ export interface components {
         };
         /** @description Place and day of a job, with its price. */
         PlanPlace: {
-            /** @description At which call. */
+            /** @description The port call. */
             call_id: components["schemas"]["CallId"];
             /**
              * Format: date
-             * @description On which day.
+             * @description The day.
              */
             day: string;
-            /** @description By which firm. */
+            /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
-            /** @description Its name. */
+            /** @description Name of the firm. */
             firm_name: string;
             /**
              * Format: double
-             * @description Fee and travel, euros; none where no plan had it so.
+             * @description Fee and travel, euros; `null` when no plan had this job.
              */
             paid_eur: number | null;
-            /** @description The port's name; empty where the call is not known any more. */
+            /** @description Name of the port; empty when the call is no longer known. */
             port_name: string;
         };
         /** @description One movement with its check on the spot. */
@@ -6996,86 +6987,85 @@ export interface components {
             /** @description Source of the heading: `given`, or earlier calls at the same `berth` or `port`. */
             source: string;
         };
-        /** @description A compass that a job is for. */
+        /** @description Compass of a job. */
         PlannedCompass: {
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description Its name. */
+            /** @description Name of the compass. */
             compass_name: string;
         };
-        /** @description One job: one visit of a firm to a ship. */
+        /** @description Job: one visit of a firm to a vessel. */
         PlannedJob: {
-            /** @description The berth, where it is known. */
+            /** @description The berth, where known. */
             berth: string | null;
             berth_heading: components["schemas"]["PlannedBerthHeading"] | null;
-            /** @description At which call. */
+            /** @description The port call. */
             call_id: components["schemas"]["CallId"];
             /**
              * Format: double
-             * @description The chance that she is not there, 0 to 1.
+             * @description Probability that the vessel is not there, 0 to 1.
              */
             chance_of_missing: number;
             /** @description The compasses to adjust. */
             compasses: components["schemas"]["PlannedCompass"][];
             /**
              * Format: date
-             * @description On which day, in the port's time.
+             * @description The day, in the port's time.
              */
             day: string;
             /**
              * Format: date
-             * @description The last day on which it would be in time.
+             * @description Due date.
              */
             due_on: string;
             /**
              * Format: double
-             * @description The firm's fee, euros.
+             * @description Fee of the firm, euros.
              */
             fee_eur: number;
-            /** @description By which firm. */
+            /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
-            /** @description Its name. */
+            /** @description Name of the firm. */
             firm_name: string;
             /** @description Start of the window in which the vessel is alongside and the firm works. */
             from: components["schemas"]["Time"];
             /**
-             * @description Orders under way that say something else: they are to be cancelled, or moved by
-             *     agreement, before this can be offered. Those that every firm declined are cancelled
-             *     when it is.
+             * @description Orders under way with another firm, call or day: to be cancelled, or moved by agreement,
+             *     before the job can be offered. Offering it cancels those that every firm declined.
              */
             instead_of: components["schemas"]["OrderId"][];
             /**
              * Format: int64
-             * @description Days after the due date.
+             * @description Number of days after the due date.
              */
             late_days: number;
-            /** @description The orders by which it is offered or agreed, one for each compass. */
+            /** @description Work orders of the job, one for each compass that is offered or agreed. */
             orders: components["schemas"]["OrderId"][];
-            /** @description Whether a person pinned it. */
+            /** @description `true` when a person pinned it. */
             pinned: boolean;
             /**
-             * @description UN/LOCODE of its port.
+             * @description UN/LOCODE of the port.
              * @example NLRTM
              */
             port: string;
-            /** @description The port's name. */
+            /** @description Name of the port. */
             port_name: string;
             /** @description Reason of the due date. */
             reason: string;
             /** @description State of the job. */
             state: components["schemas"]["PlannedJobState"];
-            /** @description Until when. */
+            /** @description End of that window. */
             to: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description Its part of the team's travel, euros.
+             * @description Share of the team's travel, euros.
              */
             travel_eur: number;
             /** @description Urgency of the due date. */
             urgency: components["schemas"]["Urgency"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description Name of the vessel. */
             vessel_name: string;
             /** @description Other terms of the cost. */
             weighed: components["schemas"]["PlannedJobWeighed"];
@@ -7116,32 +7106,32 @@ export interface components {
         /** @description A sea port. */
         Port: {
             /**
-             * @description Its UN/LOCODE.
+             * @description UN/LOCODE of the port.
              * @example NLRTM
              */
             code: string;
             /**
              * Format: double
-             * @description About where it is, degrees north: not for navigation.
+             * @description Approximate latitude, degrees north; not for navigation.
              */
             lat: number;
             /**
              * Format: double
-             * @description Degrees east.
+             * @description Approximate longitude, degrees east.
              */
             lon: number;
             /**
-             * @description Its name.
+             * @description Name of the port.
              * @example Rotterdam
              */
             name: string;
             /**
-             * @description Its legal time, by the zone's name in the IANA time zone database.
+             * @description Time zone of the port, IANA name.
              * @example Europe/Amsterdam
              */
             zone: string;
         };
-        /** @description A vessel's call at a port. */
+        /** @description Port call of a vessel. */
         PortCall: components["schemas"]["PortCallContent"] & {
             berth_heading: components["schemas"]["CallBerthHeading"] | null;
             /** @description Time of entry. */
@@ -7150,23 +7140,23 @@ export interface components {
             created_by: string;
             /** @description The call's id. */
             id: components["schemas"]["CallId"];
-            /** @description The port's name. */
+            /** @description Name of the port. */
             port_name: string;
             revised_at: components["schemas"]["Time"] | null;
             /** @description Author of the last amendment. */
             revised_by: string | null;
             /**
              * Format: int32
-             * @description Counts from 1.
+             * @description Number of the revision, from 1.
              */
             revision: number;
             /** @description Current source of the call. */
             source: components["schemas"]["PortCallSource"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description Name of the vessel. */
             vessel_name: string;
-            /** @description Reason. */
+            /** @description Reason of the withdrawal. */
             withdrawal_reason: string | null;
             withdrawn_at: components["schemas"]["Time"] | null;
             /** @description Name of the person who withdrew it. */
@@ -7211,21 +7201,21 @@ export interface components {
             berth: string | null;
             /**
              * Format: double
-             * @description Her true heading alongside, as it was given.
+             * @description True heading of the vessel alongside, as given.
              */
             berth_heading_deg: number | null;
             /** @description Expected arrival alongside. */
             eta: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description She comes within so many hours of that, nineteen times in twenty.
+             * @description Uncertainty of the arrival, hours: 95 % of arrivals lie within it.
              */
             eta_uncertainty_h: number;
             /** @description Expected departure. */
             etd: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description She leaves within so many hours of that, nineteen times in twenty.
+             * @description Uncertainty of the departure, hours: 95 % of departures lie within it.
              */
             etd_uncertainty_h: number;
             /** @description UN/LOCODE of the port. */
@@ -7235,12 +7225,12 @@ export interface components {
         };
         /** @description A page of calls. */
         PortCallList: {
-            /** @description The first to begin comes first. */
+            /** @description Calls, the earliest arrival first. */
             items: components["schemas"]["PortCall"][];
             /** @description `after` of the next page. */
             next: string | null;
         };
-        /** @description A call as it was written once. */
+        /** @description Revision of a call. */
         PortCallRevision: {
             /** @description Time of the revision. */
             at: components["schemas"]["Time"];
@@ -7250,7 +7240,7 @@ export interface components {
             call: components["schemas"]["PortCallContent"];
             /**
              * Format: int32
-             * @description Counts from 1.
+             * @description Number of the revision, from 1.
              */
             number: number;
             /** @description Source of the revision. */
@@ -7272,15 +7262,15 @@ export interface components {
          *     }
          */
         PortCallUpload: {
-            /** @description Calls that say something else now. */
+            /** @description Number of calls that changed. */
             amended: number;
-            /** @description Calls that were not known. */
+            /** @description Number of new calls. */
             created: number;
-            /** @description Calls that are over, and were passed by. */
+            /** @description Number of past calls, which are skipped. */
             over: number;
-            /** @description Calls that say what they said. */
+            /** @description Number of calls that stayed the same. */
             unchanged: number;
-            /** @description Calls that count no more. */
+            /** @description Number of calls withdrawn. */
             withdrawn: number;
         };
         /**
@@ -7290,12 +7280,12 @@ export interface components {
          *     }
          */
         PortCallWithdrawal: {
-            /** @description In a few words. */
+            /** @description The reason, in a few words. */
             reason?: string | null;
         };
-        /** @description Ports found. */
+        /** @description Result of a search. */
         PortList: {
-            /** @description Ports that begin with the text come first. */
+            /** @description Ports; those whose name begins with the text come first. */
             items: components["schemas"]["Port"][];
         };
         /** @description Prediction on one compass heading. */
@@ -7360,7 +7350,7 @@ export interface components {
             detail: string;
             left_out?: components["schemas"]["LeftOut"] | null;
             refusal?: components["schemas"]["Refusal"] | null;
-            /** @description What is wrong at the berth and what would cure it; only in `not-adjustable`. */
+            /** @description Refusals with their cures; only in `not-adjustable`. */
             refusals?: components["schemas"]["AdjustmentRefusal"][] | null;
             /**
              * Format: int32
@@ -7369,33 +7359,33 @@ export interface components {
             status: number;
             /** @description The kind in a few words. */
             title: string;
-            /** @description Names the kind of problem; ends in a word that programs may act on. */
+            /** @description Kind of problem; ends in a word that programs may act on. */
             type: string;
         };
         /**
-         * @description What a firm would have otherwise: at least one of these.
+         * @description Terms that a firm proposes: at least one of these.
          * @example {
          *       "fee_eur": 900
          *     }
          */
         ProposedTerms: {
-            /** @description The berth, if another. */
+            /** @description Berth, if another. */
             berth?: string | null;
             /**
              * Format: double
-             * @description The fee, euros, if another.
+             * @description Fee, euros, if another.
              */
             fee_eur?: number | null;
             planned_at?: components["schemas"]["Time"] | null;
         };
         /**
-         * @description A code from the app.
+         * @description Code of a second factor.
          * @example {
          *       "code": "287082"
          *     }
          */
         ProviderCode: {
-            /** @description Of the authenticator app, or a recovery code. */
+            /** @description Code of the authenticator app, or a recovery code. */
             code: string;
         };
         /** @description Quadrantal correctors: soft iron in pairs at the card's height. */
@@ -7434,12 +7424,12 @@ export interface components {
         /** @description Hours without mail; over midnight if `to` is before `from`. */
         QuietHours: {
             /**
-             * @description From then on.
+             * @description Start.
              * @example 22:00
              */
             from: string;
             /**
-             * @description Until then.
+             * @description End.
              * @example 07:00
              */
             to: string;
@@ -7462,18 +7452,18 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description Someone who gets mail.
+         * @description Id of a mail recipient.
          */
         RecipientId: string;
-        /** @description A signature by a firm's key. */
+        /** @description Signature by a firm's key. */
         RecordSignature: {
             /** @description The Ed25519 public key (RFC 8032), 64 hexadecimal digits. */
             public_key: string;
-            /** @description Its signature over the 32 octets of the record's SHA-256, 128 hexadecimal digits. */
+            /** @description Its signature over the 32 bytes of the record's SHA-256, 128 hexadecimal digits. */
             signature: string;
         };
         /**
-         * @description Codes for when the telephone is gone.
+         * @description Recovery codes for a lost phone.
          * @example {
          *       "recovery_codes": [
          *         "7QWM-0V3N-KX2D-9RTA"
@@ -7481,7 +7471,7 @@ export interface components {
          *     }
          */
         RecoveryCodes: {
-            /** @description Each signs in once in place of a code from the app. Never shown again. */
+            /** @description Codes that each work once in place of a code from the app. Never shown again. */
             recovery_codes: string[];
         };
         /**
@@ -7643,7 +7633,7 @@ export interface components {
             /** @enum {string} */
             reason: "not_converged";
         };
-        /** @description A compass and its greatest deviation, where its model was made. */
+        /** @description Greatest deviation of a compass, at the place of its model. */
         ReportDeviation: {
             /**
              * Format: double
@@ -7652,48 +7642,48 @@ export interface components {
             band95_deg: number | null;
             /**
              * Format: double
-             * @description The compass heading with the greatest deviation; none without a model.
+             * @description Compass heading of the greatest deviation; `null` without a model.
              */
             compass_deg: number | null;
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description Its name. */
+            /** @description Name of the compass. */
             compass_name: string;
             data_until: components["schemas"]["Time"] | null;
             /**
              * Format: double
-             * @description The deviation there, degrees, east positive.
+             * @description Deviation there, degrees, east positive.
              */
             deviation_deg: number | null;
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description Name of the vessel. */
             vessel_name: string;
         };
-        /** @description A compass and when it is due. */
+        /** @description Due date of a compass. */
         ReportDue: {
             /**
              * Format: date
-             * @description The day of the last adjustment on record.
+             * @description Day of the last adjustment on record.
              */
             adjusted_on: string | null;
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description Its name. */
+            /** @description Name of the compass. */
             compass_name: string;
             /**
              * Format: date
-             * @description The last day on which it may be adjusted.
+             * @description Last day for the adjustment.
              */
             due_on: string;
             order: components["schemas"]["ReportOrder"] | null;
-            /** @description Reason in plain words. */
+            /** @description Reason of the due date, as a sentence. */
             reason: string;
             /** @description Urgency of the due date. */
             urgency: components["schemas"]["Urgency"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description Name of the vessel. */
             vessel_name: string;
         };
         /**
@@ -7701,17 +7691,17 @@ export interface components {
          * @enum {string}
          */
         ReportFeeFrom: "agreed" | "terms";
-        /** @description An adjustment that was completed. */
+        /** @description Completed adjustment. */
         ReportJob: {
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description Its name. */
+            /** @description Name of the compass. */
             compass_name: string;
             /** @description Time of completion. */
             completed_at: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description Fee of the firm, euros; none where it is unknown.
+             * @description Fee of the firm, euros; `null` when unknown.
              */
             fee_eur: number | null;
             fee_from: components["schemas"]["ReportFeeFrom"] | null;
@@ -7721,16 +7711,16 @@ export interface components {
             order_id: components["schemas"]["OrderId"];
             /** @description The port. */
             port: string;
-            /** @description Whether it spared the vessel a swing; not if headings at sea contradict it. */
+            /** @description `true` when it spared the vessel a swing: headings at sea do not contradict it. */
             spared_swing: boolean;
             /** @description State of the order. */
             state: components["schemas"]["WorkOrderState"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description Name of the vessel. */
             vessel_name: string;
         };
-        /** @description A work order that is under way, in short. */
+        /** @description Summary of a work order under way. */
         ReportOrder: {
             /** @description The firm that has it. */
             firm: string | null;
@@ -7750,19 +7740,16 @@ export interface components {
              * @description Sum of the known fees of all jobs, euros, including those of jobs that failed at sea.
              */
             fees_eur: number;
-            /**
-             * @description Jobs that spared the ship a swing: those completed, but for any that the sea does
-             *     not confirm.
-             */
+            /** @description Number of jobs that spared the vessel a swing: completed and not contradicted at sea. */
             jobs: number;
             /**
              * Format: double
-             * @description The swings' cost less the fees, euros; less than nothing if the fees are more.
+             * @description Cost of the swings less the fees, euros; negative when the fees are higher.
              */
             saved_eur: number;
             /**
              * Format: double
-             * @description The ship's hours that swings would have taken.
+             * @description Duration of the spared swings, hours.
              */
             saved_h: number;
             /**
@@ -7775,10 +7762,7 @@ export interface components {
              * @description Duration of a swing, hours, from the operator's settings.
              */
             swing_h: number;
-            /**
-             * @description The swings that they spared: one for all compasses of a ship that were adjusted at
-             *     one visit.
-             */
+            /** @description Number of swings that they spared, one for all compasses adjusted at one visit. */
             swings: number;
             /** @description Number of jobs whose fee is unknown. */
             without_fee: number;
@@ -7829,17 +7813,17 @@ export interface components {
             /** @description Number of residuals. */
             samples: number;
         };
-        /** @description An entry as it is, and as it was. */
+        /** @description An entry with all its revisions. */
         RevisedEntry: components["schemas"]["LogbookEntry"] & {
-            /** @description As it was written each time, the first time first. */
+            /** @description All revisions, the first one first. */
             revisions: components["schemas"]["Revision"][];
         };
-        /** @description A call as it is, and as it was. */
+        /** @description Port call with its revisions. */
         RevisedPortCall: components["schemas"]["PortCall"] & {
-            /** @description As it was written each time, the first time first. */
+            /** @description Revisions, the first one first. */
             revisions: components["schemas"]["PortCallRevision"][];
         };
-        /** @description An entry as it was written once. */
+        /** @description A revision of an entry. */
         Revision: {
             /** @description Time of the revision. */
             at: components["schemas"]["Time"];
@@ -7847,7 +7831,7 @@ export interface components {
             author: components["schemas"]["LogbookAuthor"];
             /** @description Name of its author; empty when a report from on board does not say. */
             author_name: string;
-            /** @description The entry as it was then. */
+            /** @description The entry in this revision. */
             entry: components["schemas"]["NewEntry"];
             /**
              * Format: int32
@@ -7860,16 +7844,16 @@ export interface components {
          * @enum {string}
          */
         Role: "admin" | "viewer" | "adjuster" | "platform_admin";
-        /** @description A rule, and where it is written. */
+        /** @description Citation of a rule. */
         RuleCited: {
             /** @description Issuer and name of the document. */
             document: string;
             /**
-             * @description Its name here, which stays when its words change.
+             * @description Stable name of the rule.
              * @example iso-25862-interval
              */
             id: string;
-            /** @description Whether the rule was read in a copy or a report rather than in the document itself. */
+            /** @description True when the rule was read in a copy or a report, not in the document itself. */
             second_hand: boolean;
             /** @description Section of the document. */
             section: string | null;
@@ -8039,7 +8023,7 @@ export interface components {
          * @enum {string}
          */
         SampleReason: "no_reference" | "reference_failed" | "compass_stuck" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "disturbance" | "outlier" | "no_model";
-        /** @description The current plan, and whether it is still right. */
+        /** @description The current plan and its state. */
         Schedule: {
             outdated_since: components["schemas"]["Time"] | null;
             plan: components["schemas"]["SchedulePlan"] | null;
@@ -8048,7 +8032,7 @@ export interface components {
         };
         /** @description Orders that were offered. */
         ScheduleOffered: {
-            /** @description An order for each compass of the job. */
+            /** @description One order for each compass of the job. */
             orders: components["schemas"]["ScheduleOfferedOrder"][];
         };
         /** @description An order that was offered. */
@@ -8061,7 +8045,7 @@ export interface components {
         /** @description Plan of a fleet: jobs, their quality, and the needs that could not be met. */
         SchedulePlan: {
             against: components["schemas"]["PlanAgainst"] | null;
-            /** @description As of when: the begun hour. */
+            /** @description Time of the input, at the start of an hour. */
             as_of: components["schemas"]["Time"];
             /**
              * Format: double
@@ -8072,7 +8056,7 @@ export interface components {
             changes: components["schemas"]["PlanChange"][];
             /**
              * Format: double
-             * @description Cost by the weights, including everything unmet.
+             * @description Cost by the weights, including unmet needs.
              */
             cost_eur: number;
             /**
@@ -8080,20 +8064,20 @@ export interface components {
              * @description Distance of the cost from the bound, per cent of the cost.
              */
             gap_percent: number;
-            /** @description SHA-256 of what it rests on, hexadecimal: the same again makes no new plan. */
+            /** @description SHA-256 of the input, hexadecimal; equal input makes no new plan. */
             input_sha256: string;
-            /** @description The jobs, in order of the day. */
+            /** @description Jobs, in order of the day. */
             jobs: components["schemas"]["PlannedJob"][];
             /** @description Compasses that are due after the horizon. */
             later: components["schemas"]["LaterNeed"][];
-            /** @description Firms that it could not plan with. */
+            /** @description Firms that could not be planned with. */
             left_out: components["schemas"]["FirmLeftOut"][];
             /**
              * Format: double
-             * @description Fees and travel that are really paid.
+             * @description Fees and travel to be paid.
              */
             paid_eur: number;
-            /** @description Whether the plan is proven optimal. */
+            /** @description `true` when the plan is proven optimal. */
             proven_optimal: boolean;
             /** @description Time of creation. */
             solved_at: components["schemas"]["Time"];
@@ -8108,22 +8092,22 @@ export interface components {
             unscheduled: components["schemas"]["UnscheduledNeed"][];
             /**
              * Format: int64
-             * @description Counts the operator's plans from 1.
+             * @description Version, counted from 1 for each operator.
              */
             version: number;
         };
         /** @description A page of plans. */
         SchedulePlanList: {
-            /** @description The newest first; the last thirty are kept. */
+            /** @description Plans, the newest first; the last thirty are kept. */
             items: components["schemas"]["SchedulePlanSummary"][];
             /** @description `after` of the next page. */
             next: string | null;
         };
-        /** @description A plan in a line. */
+        /** @description Summary of a plan. */
         SchedulePlanSummary: {
             /**
              * Format: double
-             * @description Cost by the weights, including everything unmet.
+             * @description Cost by the weights, including unmet needs.
              */
             cost_eur: number;
             /**
@@ -8131,13 +8115,13 @@ export interface components {
              * @description Distance of the cost from its lower bound, per cent.
              */
             gap_percent: number;
-            /** @description Jobs in it. */
+            /** @description Number of jobs. */
             jobs: number;
-            /** @description Jobs of the plan before that moved or were dropped. */
+            /** @description Number of jobs of the previous plan that moved or were dropped. */
             moved: number;
             /**
              * Format: double
-             * @description Fees and travel that are really paid.
+             * @description Fees and travel to be paid.
              */
             paid_eur: number;
             /** @description Time of creation. */
@@ -8146,7 +8130,7 @@ export interface components {
             unscheduled: number;
             /**
              * Format: int64
-             * @description Counts the operator's plans from 1.
+             * @description Version, counted from 1 for each operator.
              */
             version: number;
         };
@@ -8170,16 +8154,13 @@ export interface components {
         ScheduleSettings: {
             /**
              * Format: int32
-             * @description Days ahead to plan for; a compass that is due later is left out.
+             * @description Planning horizon, days; a compass that is due later is left out.
              * @default 180
              */
             horizon_days: number;
-            /** @description The terms by which compasses are due where a rule gives no date. */
+            /** @description Terms of due dates for which a rule gives no date. */
             terms?: Record<string, never>;
-            /**
-             * @description Cost weights in euros; a weight that is left out has its default. docs/schedule.md
-             *     explains each.
-             */
+            /** @description Cost weights in euros, each with a default. docs/schedule.md explains them. */
             weights?: Record<string, never>;
         };
         /** @description Verification of the plan by the headings. */
@@ -8225,7 +8206,7 @@ export interface components {
             verdict: "alarm";
         };
         /**
-         * @description A code from the app.
+         * @description Code from the app.
          * @example {
          *       "code": "287082"
          *     }
@@ -8235,14 +8216,14 @@ export interface components {
             code: string;
         };
         /**
-         * @description The secret from which an authenticator app makes codes.
+         * @description Secret from which an authenticator app computes codes.
          * @example {
          *       "secret": "GEZDGNBVGY3TQOJQGEZDGNBVGY3TQOJQ",
          *       "uri": "otpauth://totp/Binnacle:ada%40example%2Ecom?secret=GEZDGNBVGY3TQOJQGEZDGNBVGY3TQOJQ&issuer=Binnacle"
          *     }
          */
         SecondFactorSecret: {
-            /** @description To be typed into the app; base 32. Never shown again. */
+            /** @description Secret to be typed into the app, base 32. Never shown again. */
             secret: string;
             /** @description The secret as a URI, to be shown as a QR code or opened on the phone. */
             uri: string;
@@ -8306,37 +8287,37 @@ export interface components {
              */
             standard_error_nt: number;
         };
-        /** @description What a second reading told. */
+        /** @description Result of a second reading. */
         SecondReadingSaid: {
-            /** @description Mistakes each of which alone would explain it. */
+            /** @description Mistakes, each of which alone would explain the reading. */
             could_be?: string[];
-            /** @description Forward, to starboard and, where it was read both times, down. */
+            /** @description Parts forward, to starboard and, if read both times, down. */
             parts: components["schemas"]["SecondReadingPart"][];
-            /** @description What is beyond the limits. */
+            /** @description Values beyond the limits. */
             refusals?: components["schemas"]["AdjustmentRefusal"][];
             setting?: components["schemas"]["CorrectorSetting"] | null;
             /**
              * Format: int32
-             * @description The step that is suspected, of all that were done since the first reading, from 1.
+             * @description Number of the suspected step, of all steps since the first reading, from 1.
              */
             step?: number | null;
-            /** @description In a word. */
+            /** @description Verdict. */
             verdict: components["schemas"]["SecondReadingVerdict"];
             /**
              * Format: double
-             * @description The widest 95 % band now, degrees.
+             * @description Widest 95 % band now, degrees.
              */
             widest_band_deg?: number | null;
-            /** @description In words. */
+            /** @description Verdict in words. */
             words: string;
             /**
              * Format: double
-             * @description The worst residual foretold now, degrees.
+             * @description Worst residual predicted now, degrees.
              */
             worst_residual_deg?: number | null;
         };
         /**
-         * @description What a second reading came to, in a word.
+         * @description Verdict of a second reading.
          * @enum {string}
          */
         SecondReadingVerdict: "as_planned" | "replan" | "slip" | "unexplained";
@@ -8353,7 +8334,7 @@ export interface components {
              */
             travel_eur?: number;
         };
-        /** @description A time that you are signed in for. */
+        /** @description Session of the signed-in user. */
         Session: {
             /**
              * @description Network address of the sign-in; empty if unknown.
@@ -8371,23 +8352,23 @@ export interface components {
             /** @description Time of the last request, to ten minutes. */
             last_seen_at: components["schemas"]["Time"];
             /**
-             * @description By whose word it was opened; none if by your password.
+             * @description Provider of the sign-in; none for a sign-in by password.
              * @example null
              */
             provider: string | null;
-            /** @description The browser's own name for itself (`User-Agent`). */
+            /** @description Name that the browser gives itself (`User-Agent`). */
             user_agent: string;
         };
         /**
          * Format: uuid
-         * @description A time that a person is signed in for.
+         * @description Id of a session.
          */
         SessionId: string;
-        /** @description A page of sessions. */
+        /** @description Page of sessions. */
         SessionList: {
-            /** @description In the order in which they were opened. */
+            /** @description Sessions in the order in which they were opened. */
             items: components["schemas"]["Session"][];
-            /** @description `after` of the next page. */
+            /** @description Value of `after` for the next page. */
             next: string | null;
         };
         /**
@@ -8396,25 +8377,25 @@ export interface components {
          */
         Severity: "notice" | "warning" | "critical";
         /**
-         * @description A user's credentials.
+         * @description Credentials of a user.
          * @example {
          *       "email": "captain@example.com",
          *       "password": "seven gulls over the quay"
          *     }
          */
         SignIn: {
-            /** @description Of the authenticator app, or a recovery code; only for who has a second factor. */
+            /** @description Code of the authenticator app, or a recovery code; only for users with a second factor. */
             code?: string | null;
-            /** @description Without regard to case. */
+            /** @description E-mail address, case-insensitive. */
             email: string;
             /**
              * Format: password
-             * @description As it was set.
+             * @description Password.
              */
             password: string;
         };
         /**
-         * @description By whose word one may sign in.
+         * @description Provider through which users may sign in.
          * @example {
          *       "name": "Example Lines"
          *     }
@@ -8424,7 +8405,7 @@ export interface components {
             name: string | null;
         };
         /**
-         * @description An operator's rules for signing in.
+         * @description Sign-in rules of an operator.
          * @example {
          *       "second_factor_required": true
          *     }
@@ -8469,7 +8450,7 @@ export interface components {
          */
         StepAction: "fit" | "take_out" | "move" | "change";
         /**
-         * @description What the compass read after a step.
+         * @description Compass reading after a step.
          * @example {
          *       "after_deg": 308.5
          *     }
@@ -8477,16 +8458,16 @@ export interface components {
         StepReading: {
             /**
              * Format: double
-             * @description What it reads now.
+             * @description Reading after the step.
              */
             after_deg: number;
             /**
              * Format: double
-             * @description What it read before; the last reading where it is not said.
+             * @description Reading before the step; the last known reading by default.
              */
             before_deg?: number | null;
         };
-        /** @description What became of a step. */
+        /** @description Result of a step. */
         StepSaid: {
             /**
              * Format: double
@@ -8500,26 +8481,26 @@ export interface components {
             before_deg: number;
             /**
              * Format: double
-             * @description Expected turn of the compass, degrees.
+             * @description Expected turn, degrees.
              */
             expected_change_deg: number;
             /**
              * Format: int32
-             * @description The step's number in its plan.
+             * @description Number of the step in its plan.
              */
             number: number;
             /**
              * Format: double
-             * @description Tolerance of the turn, degrees.
+             * @description Tolerance of that turn, degrees.
              */
             tolerance_deg: number;
-            /** @description In a word. */
+            /** @description Verdict. */
             verdict: components["schemas"]["StepVerdict"];
-            /** @description In words. */
+            /** @description Verdict in words. */
             words: string;
         };
         /**
-         * @description What became of a step, in a word.
+         * @description Verdict of a step.
          * @enum {string}
          */
         StepVerdict: "confirmed" | "not_seen" | "wrong_end" | "other_strength" | "unexplained";
@@ -8536,7 +8517,7 @@ export interface components {
             changes: components["schemas"]["Change"][];
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description In order of time, without gaps; the last one goes on. */
+            /** @description In order of time, without gaps; the last one has no end. */
             epochs: components["schemas"]["Epoch"][];
             /**
              * @description Effects of logbook entries on the samples that people should know, a sentence each.
@@ -8580,7 +8561,7 @@ export interface components {
              */
             z_nt: number;
         };
-        /** @description A token, without its secret. */
+        /** @description Token, without its secret. */
         Token: {
             /** @description Creation time. */
             created_at: components["schemas"]["Time"];
@@ -8596,14 +8577,14 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description An API token.
+         * @description Id of an API token.
          */
         TokenId: string;
-        /** @description A page of tokens. */
+        /** @description Page of tokens. */
         TokenList: {
-            /** @description In the order in which they were made. */
+            /** @description Tokens in the order in which they were created. */
             items: components["schemas"]["Token"][];
-            /** @description `after` of the next page. */
+            /** @description Value of `after` for the next page. */
             next: string | null;
         };
         /**
@@ -8628,11 +8609,11 @@ export interface components {
              */
             due_on: string;
             /**
-             * @description Orders under way that firms are asked for or hold though nothing is planned: to be
-             *     cancelled, or moved by agreement.
+             * @description Orders that are offered or accepted though no job is planned: to be cancelled, or moved by
+             *     agreement.
              */
             orders?: components["schemas"]["OrderId"][];
-            /** @description Whether it is in the plan, after the due date. */
+            /** @description `true` when it is in the plan after the due date. */
             planned_late: boolean;
             /** @description Reason of the due date. */
             reason: string;
@@ -8640,7 +8621,7 @@ export interface components {
             urgency: components["schemas"]["Urgency"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description Name of the vessel. */
             vessel_name: string;
             /** @description Changes that would have made it possible, the nearest first. */
             would_help: string[];
@@ -8650,7 +8631,7 @@ export interface components {
          * @enum {string}
          */
         Urgency: "routine" | "soon" | "urgent" | "overdue";
-        /** @description One of the operator's people. */
+        /** @description User of the operator. */
         User: {
             /** @description Creation time of the user. */
             created_at: components["schemas"]["Time"];
@@ -8677,14 +8658,14 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description A person who signs in.
+         * @description Id of a user: a person who signs in.
          */
         UserId: string;
-        /** @description A page of users. */
+        /** @description Page of users. */
         UserList: {
-            /** @description In the order in which they were invited. */
+            /** @description Users in the order in which they were invited. */
             items: components["schemas"]["User"][];
-            /** @description `after` of the next page. */
+            /** @description Value of `after` for the next page. */
             next: string | null;
         };
         /**
@@ -8692,7 +8673,7 @@ export interface components {
          * @enum {string}
          */
         UserState: "invited" | "active" | "disabled";
-        /** @description A vessel, and how its compass stands. */
+        /** @description A vessel, with the state of its compass. */
         Vessel: {
             /** @description Its call sign. */
             call_sign: string | null;
@@ -8752,7 +8733,7 @@ export interface components {
             /** @description Name. */
             name?: string | null;
         };
-        /** @description The data of an event. */
+        /** @description Data of an event. */
         VesselEvent: {
             /** @description Kind of event. */
             kind: components["schemas"]["EventKind"];
@@ -8762,7 +8743,7 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description A ship.
+         * @description Id of a vessel.
          */
         VesselId: string;
         /** @description A page of vessels. */
@@ -8824,13 +8805,13 @@ export interface components {
             /** @description Settings of the analysis of its samples. */
             analysis: components["schemas"]["ReadingSettings"];
         };
-        /** @description A webhook, without its secret. */
+        /** @description Webhook, without its secret. */
         Webhook: {
             /** @description Creation time. */
             created_at: components["schemas"]["Time"];
             /**
              * Format: int64
-             * @description Deliveries that were given up.
+             * @description Number of deliveries that were given up.
              */
             dead: number;
             /** @description True if messages are sent; undelivered messages wait meanwhile. */
@@ -8841,7 +8822,7 @@ export interface components {
             kinds: components["schemas"]["MessageKind"][];
             /**
              * Format: int64
-             * @description Deliveries that wait.
+             * @description Number of pending deliveries.
              */
             pending: number;
             /**
@@ -8852,14 +8833,14 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description Where an operator's programs want to be told.
+         * @description Id of a webhook.
          */
         WebhookId: string;
-        /** @description A page of webhooks. */
+        /** @description Page of webhooks. */
         WebhookList: {
-            /** @description In the order in which they were made. */
+            /** @description Webhooks in the order in which they were created. */
             items: components["schemas"]["Webhook"][];
-            /** @description `after` of the next page. */
+            /** @description Value of `after` for the next page. */
             next: string | null;
         };
         /**
@@ -8872,32 +8853,29 @@ export interface components {
             /** @description In a few words. */
             reason?: string | null;
         };
-        /** @description An order, and all that the next thing to do depends on. */
+        /** @description Order with everything that the next action depends on. */
         WorkOrder: components["schemas"]["WorkOrderSummary"] & {
             berth_check: components["schemas"]["BerthCheck"] | null;
             call_change: components["schemas"]["WorkOrderCallChange"] | null;
             /**
              * Format: double
-             * @description What the compass read last at the berth, degrees.
+             * @description Last reading of the compass at the berth, degrees.
              */
             compass_deg: number | null;
             completion: components["schemas"]["CompletionMade"] | null;
             /**
              * Format: double
-             * @description The fee that was agreed on with the firm that has it, euros, without travel; none
-             *     while no firm has it, or where none was said.
+             * @description Fee agreed with the firm that has the order, euros, without travel; `null` without a firm,
+             *     or without a fee.
              */
             fee_eur: number | null;
             last_step: components["schemas"]["StepSaid"] | null;
-            /** @description What a plan must keep to. */
+            /** @description Limits on plans. */
             limits: components["schemas"]["PlanLimits"];
-            /** @description Whether someone has said since that reading how the correctors stand. */
+            /** @description True if the settings were reported since that reading. */
             looked_since: boolean;
             next_step: components["schemas"]["PlanStep"] | null;
-            /**
-             * @description What became of its offers, in the order in which firms are asked; a firm sees its
-             *     own only.
-             */
+            /** @description Offers, in the order in which they are sent; a firm sees its own only. */
             offers: components["schemas"]["WorkOrderOffer"][];
             /** @description Photographs, in order. */
             photos: components["schemas"]["OrderPhoto"][];
@@ -8905,27 +8883,27 @@ export interface components {
             reading: components["schemas"]["BerthReading"] | null;
             second_reading: components["schemas"]["SecondReadingSaid"] | null;
             setting: components["schemas"]["CorrectorSetting"] | null;
-            /** @description Signatures over the record by firms' keys, and whose they are. */
+            /** @description Signatures over the record by firms' keys, with their owners. */
             signatures: components["schemas"]["WorkOrderSignature"][];
             /**
-             * @description What its figures are: predictions, until headings at sea agree.
+             * @description Status of the figures: predictions, until headings at sea agree.
              * @example predicted, not a certificate
              */
             standing: string;
-            /** @description How many of its steps are done. */
+            /** @description Number of its steps done. */
             steps_done: number;
             verification: components["schemas"]["OrderVerification"] | null;
         };
-        /** @description Where and when a vessel is alongside. */
+        /** @description Stay of a vessel alongside. */
         WorkOrderAlongside: {
-            /** @description When she is expected alongside. */
+            /** @description Expected time of arrival alongside. */
             eta: components["schemas"]["Time"];
             /**
              * @description The ETA in the port's time.
              * @example 2026-12-08T07:00:00+01:00
              */
             eta_local: string;
-            /** @description When she is expected to leave. */
+            /** @description Expected time of departure. */
             etd: components["schemas"]["Time"];
             /**
              * @description The ETD in the port's time.
@@ -8935,30 +8913,30 @@ export interface components {
             /** @description UN/LOCODE of the port. */
             port: string;
         };
-        /** @description What became of a port call. */
+        /** @description Change of a port call. */
         WorkOrderCallChange: {
-            /** @description Who moved it. */
+            /** @description Author of the change. */
             by: string;
             /** @description The call. */
             call_id: components["schemas"]["CallId"];
-            /** @description How the agreed time lies in it now. */
+            /** @description Fit of the agreed time. */
             fit: components["schemas"]["WorkOrderCallFit"];
             is: components["schemas"]["WorkOrderAlongside"] | null;
-            /** @description As it was. */
+            /** @description Stay before. */
             was: components["schemas"]["WorkOrderAlongside"];
         };
         /**
-         * @description How an order's time lies in its port call.
+         * @description Fit of an order's time to its port call.
          * @enum {string}
          */
         WorkOrderCallFit: "fits" | "other_hour" | "needs_new_day" | "no_call";
         /** @description An entry of an order's log: a line of canonical JSON with its hash. */
         WorkOrderEntry: {
-            /** @description What happened: `kind`, `at`, `author`, `previous_sha256` and `content`. */
+            /** @description The entry: `kind`, `at`, `author`, `previous_sha256` and `content`. */
             entry: Record<string, never>;
             /**
              * Format: int64
-             * @description Counts from 1.
+             * @description Number of the entry, from 1.
              */
             seq: number;
             /** @description SHA-256 of the line as it stands in the archive, hexadecimal. */
@@ -8971,34 +8949,33 @@ export interface components {
             /** @description `after` of the next page. */
             next: string | null;
         };
-        /** @description A page of orders. */
+        /** @description Page of orders. */
         WorkOrderList: {
-            /** @description The newest first. */
+            /** @description Orders, the newest first. */
             items: components["schemas"]["WorkOrderSummary"][];
             /** @description `after` of the next page. */
             next: string | null;
         };
-        /** @description An offer to a firm. */
+        /** @description Offer to a firm. */
         WorkOrderOffer: {
             answer_by: components["schemas"]["Time"] | null;
             /**
              * Format: double
-             * @description The fee that it was offered, euros, without travel; none where nobody has said on
-             *     what terms the firm works.
+             * @description Offered fee, euros, without travel; `null` if the firm has no terms.
              */
             fee_eur: number | null;
             /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
-            /** @description Its name when it was offered. */
+            /** @description Its name at the time of the offer. */
             firm_name: string;
             new_terms: components["schemas"]["WorkOrderTerms"] | null;
-            /** @description How it stands. */
+            /** @description Present state. */
             state: components["schemas"]["OfferState"];
             terms: components["schemas"]["WorkOrderTerms"] | null;
-            /** @description What was said last, in words. */
+            /** @description Last text. */
             text: string | null;
         };
-        /** @description A signature over the record. */
+        /** @description Signature over the record. */
         WorkOrderSignature: {
             key: components["schemas"]["KnownKey"] | null;
             /** @description The public key, hexadecimal. */
@@ -9007,15 +8984,15 @@ export interface components {
             signature: string;
         };
         /**
-         * @description How far an order has come.
+         * @description State of an order.
          * @enum {string}
          */
         WorkOrderState: "planned" | "offered" | "proposed" | "declined" | "accepted" | "on_board" | "measured" | "adjusting" | "adjusted" | "verified" | "failed" | "closed" | "closed_unverified" | "cancelled";
-        /** @description An order in a line. */
+        /** @description Summary of an order. */
         WorkOrderSummary: {
-            /** @description The number of their licence. */
+            /** @description Licence number. */
             adjuster_licence: string | null;
-            /** @description Who is to do it, or did. */
+            /** @description Name of the adjuster. */
             adjuster_name: string | null;
             answer_by: components["schemas"]["Time"] | null;
             /** @description The berth. */
@@ -9023,44 +9000,44 @@ export interface components {
             call_fit: components["schemas"]["WorkOrderCallFit"] | null;
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description Its name. */
+            /** @description The compass's name. */
             compass_name: string;
             completed_at: components["schemas"]["Time"] | null;
-            /** @description When it was written. */
+            /** @description Time of creation. */
             created_at: components["schemas"]["Time"];
-            /** @description Who wrote it. */
+            /** @description Author. */
             created_by: string;
-            /** @description Their firm. */
+            /** @description Firm of the adjuster. */
             firm: string | null;
             firm_id: components["schemas"]["FirmId"] | null;
-            /** @description Whether the compass's binnacle is entered. */
+            /** @description True if the compass has a binnacle. */
             has_binnacle: boolean;
             /** @description The order's id. */
             id: components["schemas"]["OrderId"];
             /**
              * Format: int64
-             * @description Entries in its log.
+             * @description Number of entries in its log.
              */
             last_seq: number;
-            /** @description SHA-256 of the last of them. */
+            /** @description SHA-256 of the last entry. */
             last_sha256: string;
-            /** @description Whose vessel it is. */
+            /** @description Operator of the vessel. */
             operator_id: components["schemas"]["OperatorId"];
-            /** @description Their name. */
+            /** @description The operator's name. */
             operator_name: string;
-            /** @description When it is to be done. */
+            /** @description Time of the job. */
             planned_at: components["schemas"]["Time"];
             /** @description The port. */
             port: string;
-            /** @description How far it has come. */
+            /** @description Present state. */
             state: components["schemas"]["WorkOrderState"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description The vessel's name. */
             vessel_name: string;
         };
         /**
-         * @description Other terms than were offered.
+         * @description Terms other than offered.
          * @example {
          *       "berth": "A7",
          *       "fee_eur": 900,
@@ -9068,14 +9045,14 @@ export interface components {
          *     }
          */
         WorkOrderTerms: {
-            /** @description The berth, if another. */
+            /** @description Berth, if another. */
             berth?: string | null;
             /**
              * Format: double
-             * @description The fee, euros.
+             * @description Fee, euros.
              */
             fee_eur?: number | null;
-            /** @description When it is to be done. */
+            /** @description Time of the job. */
             planned_at: components["schemas"]["Time"];
         };
         /** @description The heading with the greatest deviation. */
@@ -9373,7 +9350,7 @@ export interface operations {
                 severity?: components["schemas"]["Severity"];
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -9673,7 +9650,7 @@ export interface operations {
                 to?: string;
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -9891,7 +9868,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -9943,7 +9920,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -10039,7 +10016,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The vessel is none of yours */
+            /** @description Vessel not found in your fleet */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -10127,7 +10104,7 @@ export interface operations {
     calendar: {
         parameters: {
             query?: {
-                /** @description The secret of a calendar; without it, the caller's own orders. */
+                /** @description Secret of a calendar feed; without it the caller's own orders are shown. */
                 token?: string;
             };
             header?: never;
@@ -10258,7 +10235,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -10309,7 +10286,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path?: never;
@@ -10440,7 +10417,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -10502,7 +10479,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -10698,7 +10675,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Also when you do not work with it */
+            /** @description Also when it does not work for you */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -10786,7 +10763,7 @@ export interface operations {
     find_fleet: {
         parameters: {
             query?: {
-                /** @description The only one, for a page that has the others already. */
+                /** @description Only this vessel, for a page that has the others already. */
                 vessel?: components["schemas"]["VesselId"];
             };
             header?: never;
@@ -10882,7 +10859,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The code has lapsed */
+            /** @description The code has expired */
             410: {
                 headers: {
                     [name: string]: unknown;
@@ -10925,7 +10902,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -10976,7 +10953,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path?: never;
@@ -11024,7 +11001,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The server was not told how to send mail */
+            /** @description Mail is not set up on this server */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -11250,11 +11227,11 @@ export interface operations {
     list_letters: {
         parameters: {
             query?: {
-                /** @description Only those that stand so; `dead` are the dead letters. */
+                /** @description State of the deliveries to list; `dead` are the dead letters. */
                 state?: components["schemas"]["DeliveryState"];
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -11409,7 +11386,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The server was not told how to send mail */
+            /** @description Mail is not set up on this server */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -11690,7 +11667,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description There is one already */
+            /** @description A second factor exists already */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -11786,7 +11763,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description None was begun, or it is confirmed */
+            /** @description None is being set up, or it is already confirmed */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -12017,13 +11994,13 @@ export interface operations {
     list_needs: {
         parameters: {
             query?: {
-                /** @description Of this urgency only. */
+                /** @description Only needs of this urgency. */
                 urgency?: components["schemas"]["Urgency"];
-                /** @description Due on this day or before. */
+                /** @description Only needs due on this day or before. */
                 due_by?: string;
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -12079,7 +12056,7 @@ export interface operations {
                 kind?: components["schemas"]["NotificationKind"];
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -12285,7 +12262,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -12336,7 +12313,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path?: never;
@@ -12556,7 +12533,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description It is asked for an order or has one */
+            /** @description It has an open offer or an order */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -12574,13 +12551,13 @@ export interface operations {
                 from?: string;
                 /** @description Only calls that begin before this instant, RFC 3339. */
                 to?: string;
-                /** @description At this port only, UN/LOCODE. */
+                /** @description Only calls at this port, UN/LOCODE. */
                 port?: string;
-                /** @description Whether to list withdrawn calls too; by default they are left out. */
+                /** @description `true` to list withdrawn calls too; by default they are left out. */
                 withdrawn?: boolean;
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -12640,8 +12617,8 @@ export interface operations {
         parameters: {
             query?: {
                 /**
-                 * @description Whether the file is complete. Then calls of its vessels that came from such a file before,
-                 *     are not over and are missing in this one are withdrawn. By default they stay.
+                 * @description `true` for a complete file: calls of its vessels from an earlier file that are not over and
+                 *     missing in this one are withdrawn. By default they stay.
                  */
                 replace?: boolean;
             };
@@ -12713,7 +12690,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Something is wrong; the detail names the lines and their columns, the first fifty of them */
+            /** @description The file has errors; the detail names the first fifty with line and column */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -12792,12 +12769,12 @@ export interface operations {
         parameters: {
             query?: {
                 /**
-                 * @description The first day, UTC; the first of the month of `to` if not said.
+                 * @description First day, UTC; by default the first of the month of `to`.
                  * @example 2026-11-01
                  */
                 from?: string;
                 /**
-                 * @description The last day, UTC; today if not said.
+                 * @description Last day, UTC; today by default.
                  * @example 2026-11-30
                  */
                 to?: string;
@@ -12859,12 +12836,12 @@ export interface operations {
         parameters: {
             query?: {
                 /**
-                 * @description The first day, UTC; the first of the month of `to` if not said.
+                 * @description First day, UTC; by default the first of the month of `to`.
                  * @example 2026-11-01
                  */
                 from?: string;
                 /**
-                 * @description The last day, UTC; today if not said.
+                 * @description Last day, UTC; today by default.
                  * @example 2026-11-30
                  */
                 to?: string;
@@ -12928,12 +12905,12 @@ export interface operations {
         parameters: {
             query?: {
                 /**
-                 * @description The first day, UTC; the first of the month of `to` if not said.
+                 * @description First day, UTC; by default the first of the month of `to`.
                  * @example 2026-11-01
                  */
                 from?: string;
                 /**
-                 * @description The last day, UTC; today if not said.
+                 * @description Last day, UTC; today by default.
                  * @example 2026-11-30
                  */
                 to?: string;
@@ -13078,7 +13055,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The server was not told how to send mail */
+            /** @description This server is not set up to send mail */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -13259,7 +13236,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description There is another plan, the job is offered already, an order under way says something else, or the firm has no team left that day */
+            /** @description There is a newer plan, the job has already been offered, an order under way differs, or the firm has no team left that day */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -13384,7 +13361,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Compass, call or firm are not there */
+            /** @description Compass, call or firm not found */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -13474,7 +13451,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -13722,7 +13699,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Others make it at the same time, or the fleet is too large */
+            /** @description It is being made by others, or the fleet is too large */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -13870,9 +13847,9 @@ export interface operations {
     return_from_provider: {
         parameters: {
             query?: {
-                /** @description Stands for who signed in; we redeem it. */
+                /** @description Code that stands for the signed-in person. */
                 code?: string;
-                /** @description As we gave it. */
+                /** @description State value, as it was sent. */
                 state?: string;
                 /** @description Error code, if nobody signed in. */
                 error?: string;
@@ -13890,7 +13867,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description There is no provider */
+            /** @description No provider is set up */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -14004,7 +13981,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description There is no provider */
+            /** @description No provider is set up */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -14020,7 +13997,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -14298,19 +14275,19 @@ export interface operations {
     put_batch: {
         parameters: {
             query?: {
-                /** @description The model version it uses; what follows it comes at once. */
+                /** @description The model version it uses. Any later one is sent at once. */
                 model?: string;
-                /** @description The last eight digits of that model's id; a later model is sent when it matters. */
+                /** @description The last eight digits of that model's id. A later model is sent when the difference matters. */
                 card?: string;
                 /** @description The settings it uses. */
                 settings?: number;
                 /** @description The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent. */
                 form?: number;
-                /** @description With a batch: how many others wait on board; none when `wait` says that it is the last. */
+                /** @description With a batch: number of others that wait on board; absent with `wait`, in the last one. */
                 waits?: number;
                 /**
-                 * @description With a batch: what is left of the link's budget where that is less than a day's, in
-                 *     hundredths of it; less than none when overdrawn.
+                 * @description With a batch: rest of the link's budget where that is less than a day's, in hundredths of
+                 *     it; negative when overdrawn.
                  */
                 budget?: number;
                 /**
@@ -14402,19 +14379,19 @@ export interface operations {
     downlink: {
         parameters: {
             query?: {
-                /** @description The model version it uses; what follows it comes at once. */
+                /** @description The model version it uses. Any later one is sent at once. */
                 model?: string;
-                /** @description The last eight digits of that model's id; a later model is sent when it matters. */
+                /** @description The last eight digits of that model's id. A later model is sent when the difference matters. */
                 card?: string;
                 /** @description The settings it uses. */
                 settings?: number;
                 /** @description The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent. */
                 form?: number;
-                /** @description With a batch: how many others wait on board; none when `wait` says that it is the last. */
+                /** @description With a batch: number of others that wait on board; absent with `wait`, in the last one. */
                 waits?: number;
                 /**
-                 * @description With a batch: what is left of the link's budget where that is less than a day's, in
-                 *     hundredths of it; less than none when overdrawn.
+                 * @description With a batch: rest of the link's budget where that is less than a day's, in hundredths of
+                 *     it; negative when overdrawn.
                  */
                 budget?: number;
                 /**
@@ -14475,7 +14452,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -14643,7 +14620,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -14739,7 +14716,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The e-mail has an account */
+            /** @description The e-mail address already has an account */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -14822,7 +14799,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description It is the last admin */
+            /** @description The user is the last admin */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -14893,7 +14870,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description It is the last admin */
+            /** @description The user is the last admin */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -14978,7 +14955,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The user is shut out */
+            /** @description The user is disabled */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -15039,11 +15016,11 @@ export interface operations {
     list_vessels: {
         parameters: {
             query?: {
-                /** @description Those in service, or those out of it; those in service if not said. */
+                /** @description Those in service, which is the default, or those out of it. */
                 in_service?: boolean;
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -15094,7 +15071,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path?: never;
@@ -15280,7 +15257,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A work order of hers is under way */
+            /** @description A work order of the vessel is under way */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -15323,7 +15300,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -15521,19 +15498,19 @@ export interface operations {
     card_csv: {
         parameters: {
             query?: {
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
                 /**
-                 * @description Degrees north; where the vessel was last if not said.
+                 * @description Degrees north; the vessel's last position by default.
                  * @example 43.4
                  */
                 lat?: number;
                 /**
-                 * @description Degrees east; where the vessel was last if not said.
+                 * @description Degrees east; the vessel's last position by default.
                  * @example -3.1
                  */
                 lon?: number;
-                /** @description RFC 3339; the time of the last sample, or of the model, if not said. */
+                /** @description RFC 3339; by default the time of the last sample, or of the model. */
                 at?: string;
             };
             header?: never;
@@ -15580,7 +15557,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Also when there is no model, or it holds no more */
+            /** @description Also when there is no model, or it is withdrawn */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -15589,7 +15566,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The model makes no card: the detail says why */
+            /** @description The model makes no card, for the reason in the detail */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -15612,19 +15589,19 @@ export interface operations {
     card_json: {
         parameters: {
             query?: {
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
                 /**
-                 * @description Degrees north; where the vessel was last if not said.
+                 * @description Degrees north; the vessel's last position by default.
                  * @example 43.4
                  */
                 lat?: number;
                 /**
-                 * @description Degrees east; where the vessel was last if not said.
+                 * @description Degrees east; the vessel's last position by default.
                  * @example -3.1
                  */
                 lon?: number;
-                /** @description RFC 3339; the time of the last sample, or of the model, if not said. */
+                /** @description RFC 3339; by default the time of the last sample, or of the model. */
                 at?: string;
             };
             header?: never;
@@ -15671,7 +15648,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Also when there is no model, or it holds no more */
+            /** @description Also when there is no model, or it is withdrawn */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -15680,7 +15657,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The model makes no card: the detail says why */
+            /** @description The model makes no card, for the reason in the detail */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -15703,19 +15680,19 @@ export interface operations {
     card_pdf: {
         parameters: {
             query?: {
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
                 /**
-                 * @description Degrees north; where the vessel was last if not said.
+                 * @description Degrees north; the vessel's last position by default.
                  * @example 43.4
                  */
                 lat?: number;
                 /**
-                 * @description Degrees east; where the vessel was last if not said.
+                 * @description Degrees east; the vessel's last position by default.
                  * @example -3.1
                  */
                 lon?: number;
-                /** @description RFC 3339; the time of the last sample, or of the model, if not said. */
+                /** @description RFC 3339; by default the time of the last sample, or of the model. */
                 at?: string;
             };
             header?: never;
@@ -15762,7 +15739,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Also when there is no model, or it holds no more */
+            /** @description Also when there is no model, or it is withdrawn */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -15771,7 +15748,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The model makes no card: the detail says why */
+            /** @description The model makes no card, for the reason in the detail */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -15794,19 +15771,19 @@ export interface operations {
     card_svg: {
         parameters: {
             query?: {
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
                 /**
-                 * @description Degrees north; where the vessel was last if not said.
+                 * @description Degrees north; the vessel's last position by default.
                  * @example 43.4
                  */
                 lat?: number;
                 /**
-                 * @description Degrees east; where the vessel was last if not said.
+                 * @description Degrees east; the vessel's last position by default.
                  * @example -3.1
                  */
                 lon?: number;
-                /** @description RFC 3339; the time of the last sample, or of the model, if not said. */
+                /** @description RFC 3339; by default the time of the last sample, or of the model. */
                 at?: string;
             };
             header?: never;
@@ -15853,7 +15830,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Also when there is no model, or it holds no more */
+            /** @description Also when there is no model, or it is withdrawn */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -15862,7 +15839,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The model makes no card: the detail says why */
+            /** @description The model makes no card, for the reason in the detail */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -15885,7 +15862,7 @@ export interface operations {
     list_changes: {
         parameters: {
             query?: {
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
             };
             header?: never;
@@ -15948,7 +15925,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -16010,7 +15987,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -16241,11 +16218,11 @@ export interface operations {
     put_binnacle: {
         parameters: {
             query?: {
-                /** @description In a few words, such as what was bought or measured. */
+                /** @description The reason in a few words, such as a purchase or a measurement. */
                 reason?: string;
             };
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -16389,7 +16366,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -16451,7 +16428,7 @@ export interface operations {
     find_coverage: {
         parameters: {
             query?: {
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
             };
             header?: never;
@@ -16512,15 +16489,15 @@ export interface operations {
     find_deviation: {
         parameters: {
             query?: {
-                /** @description Degrees north; the last position's if not said. */
+                /** @description Degrees north; the last position's by default. */
                 lat?: number;
-                /** @description Degrees east; the last position's if not said. */
+                /** @description Degrees east; the last position's by default. */
                 lon?: number;
-                /** @description RFC 3339; the last position's time if not said. */
+                /** @description RFC 3339; the last position's time by default. */
                 at?: string;
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
-                /** @description Degrees of compass heading between rows, 1 to 90; 15 if not said. */
+                /** @description Degrees of compass heading between rows, 1 to 90; 15 by default. */
                 step_deg?: number;
             };
             header?: never;
@@ -16600,11 +16577,11 @@ export interface operations {
                  * @example 2026-12-01T00:00:00Z
                  */
                 to?: string;
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -16684,7 +16661,7 @@ export interface operations {
                  * @example 2026-12-01T00:00:00Z
                  */
                 to?: string;
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
             };
             header?: never;
@@ -16764,7 +16741,7 @@ export interface operations {
                  * @example 2026-12-01T00:00:00Z
                  */
                 to?: string;
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
             };
             header?: never;
@@ -16844,7 +16821,7 @@ export interface operations {
                 withdrawn?: boolean;
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -16915,7 +16892,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -17245,7 +17222,7 @@ export interface operations {
     current_model: {
         parameters: {
             query?: {
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
             };
             header?: never;
@@ -17306,11 +17283,11 @@ export interface operations {
     list_models: {
         parameters: {
             query?: {
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -17371,13 +17348,13 @@ export interface operations {
     list_vessel_needs: {
         parameters: {
             query?: {
-                /** @description Of this urgency only. */
+                /** @description Only needs of this urgency. */
                 urgency?: components["schemas"]["Urgency"];
-                /** @description Due on this day or before. */
+                /** @description Only needs due on this day or before. */
                 due_by?: string;
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -17580,13 +17557,13 @@ export interface operations {
                 from?: string;
                 /** @description Only calls that begin before this instant, RFC 3339. */
                 to?: string;
-                /** @description At this port only, UN/LOCODE. */
+                /** @description Only calls at this port, UN/LOCODE. */
                 port?: string;
-                /** @description Whether to list withdrawn calls too; by default they are left out. */
+                /** @description `true` to list withdrawn calls too; by default they are left out. */
                 withdrawn?: boolean;
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -17657,7 +17634,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -17716,7 +17693,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description It overlaps another call, or there is one of this reference */
+            /** @description It overlaps another call, or its reference is in use */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -17807,8 +17784,8 @@ export interface operations {
         parameters: {
             query?: {
                 /**
-                 * @description Whether the file is complete. Then calls of its vessels that came from such a file before,
-                 *     are not over and are missing in this one are withdrawn. By default they stay.
+                 * @description `true` for a complete file: calls of its vessels from an earlier file that are not over and
+                 *     missing in this one are withdrawn. By default they stay.
                  */
                 replace?: boolean;
             };
@@ -17891,7 +17868,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Something is wrong; the detail names the lines and their columns, the first fifty of them */
+            /** @description The file has errors; the detail names the first fifty with line and column */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -17906,8 +17883,8 @@ export interface operations {
         parameters: {
             query?: {
                 /**
-                 * @description Whether the file is complete. Then calls of its vessels that came from such a file before,
-                 *     are not over and are missing in this one are withdrawn. By default they stay.
+                 * @description `true` for a complete file: calls of its vessels from an earlier file that are not over and
+                 *     missing in this one are withdrawn. By default they stay.
                  */
                 replace?: boolean;
             };
@@ -17999,7 +17976,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Something is wrong; the detail names the line and the property */
+            /** @description The file has errors; the detail names line and property */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -18265,11 +18242,11 @@ export interface operations {
                 from?: string;
                 /** @description The instant after the last, RFC 3339. */
                 to?: string;
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -18343,7 +18320,7 @@ export interface operations {
                 from?: string;
                 /** @description The instant after the last, RFC 3339. */
                 to?: string;
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
             };
             header?: never;
@@ -18417,7 +18394,7 @@ export interface operations {
                 from?: string;
                 /** @description The instant after the last, RFC 3339. */
                 to?: string;
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
             };
             header?: never;
@@ -18491,7 +18468,7 @@ export interface operations {
                 from?: string;
                 /** @description The instant after the last, RFC 3339. */
                 to?: string;
-                /** @description A compass of the vessel's; its first one if not said. */
+                /** @description A compass of the vessel; its first one by default. */
                 compass?: components["schemas"]["CompassId"];
             };
             header?: never;
@@ -18701,7 +18678,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -18752,7 +18729,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path?: never;
@@ -19017,11 +18994,11 @@ export interface operations {
     list_deliveries: {
         parameters: {
             query?: {
-                /** @description Only those that stand so; `dead` are the dead letters. */
+                /** @description State of the deliveries to list; `dead` are the dead letters. */
                 state?: components["schemas"]["DeliveryState"];
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -19181,13 +19158,13 @@ export interface operations {
     list_work_orders: {
         parameters: {
             query?: {
-                /** @description Of this vessel only. */
+                /** @description This vessel only. */
                 vessel?: components["schemas"]["VesselId"];
-                /** @description In this state only. */
+                /** @description This state only. */
                 state?: components["schemas"]["WorkOrderState"];
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -19238,7 +19215,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path?: never;
@@ -19386,7 +19363,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -19445,7 +19422,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description There is nothing to accept, or not any more */
+            /** @description There is nothing to accept, or no longer */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -19487,7 +19464,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -19637,7 +19614,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -19738,7 +19715,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -19797,7 +19774,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Not before headings at sea have spoken, but for one that was adjusted `without_verification` */
+            /** @description The adjustment is not verified at sea, and the request is not `without_verification` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -19839,7 +19816,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -19940,7 +19917,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -20041,7 +20018,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -20098,7 +20075,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description There is nothing to decline, or not any more */
+            /** @description There is nothing to decline, or no longer */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -20141,7 +20118,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -20262,7 +20239,7 @@ export interface operations {
             query?: {
                 /** @description Maximum number of items; 100 by default. */
                 limit?: number;
-                /** @description `next` of the page before. */
+                /** @description `next` of the previous page. */
                 after?: string;
             };
             header?: never;
@@ -20324,7 +20301,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -20381,7 +20358,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description There is no such firm to write to */
+            /** @description No such firm has an open offer or the order */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -20472,7 +20449,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -20531,7 +20508,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description It is offered already, or has begun */
+            /** @description An offer is open, or the work has begun */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -20573,7 +20550,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -20673,11 +20650,11 @@ export interface operations {
     add_photo: {
         parameters: {
             query?: {
-                /** @description In a few words. */
+                /** @description Short description. */
                 caption?: string;
             };
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -20880,7 +20857,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description There is no plan, and what would cure that */
+            /** @description There is no plan; the refusals name the cures */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -20895,7 +20872,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -20981,7 +20958,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description There is no plan, and what would cure that */
+            /** @description There is no plan; the refusals name the cures */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -20996,7 +20973,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -21055,7 +21032,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description It is not offered to your firm, or not any more */
+            /** @description Your firm has no open offer */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -21329,7 +21306,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -21421,7 +21398,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -21480,7 +21457,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description No firm has it, the work has begun, she is not alongside then, or the firm has no team left that day */
+            /** @description No firm has it, the work has begun, the vessel is not alongside then, or the firm has no team left that day */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -21522,7 +21499,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -21581,7 +21558,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Nothing is asked, or not any more, or the call has moved meanwhile */
+            /** @description No other time is proposed, or no longer, or the call has moved meanwhile */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -21623,7 +21600,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -21682,7 +21659,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Nothing is asked, or not any more */
+            /** @description No other time is proposed, or no longer */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -21724,7 +21701,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -21783,7 +21760,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Not before all steps are done, or nothing was moved */
+            /** @description A step is not done, or nothing was moved */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -21825,7 +21802,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -21911,7 +21888,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description It is not this key's */
+            /** @description The signature is not by this key */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -21926,7 +21903,7 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
-                /** @description The same key with the same request again creates nothing more */
+                /** @description Key of the request; the same request with the same key creates nothing more */
                 "Idempotency-Key"?: string;
             };
             path: {
@@ -21986,7 +21963,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description It is not the step to do now */
+            /** @description It is not the next step */
             409: {
                 headers: {
                     [name: string]: unknown;
