@@ -97,7 +97,11 @@ pub(super) fn make(input: CardInput) -> Result<Card, Refusal> {
         },
         verified: verified_by,
         unverified_order: unverified.map(|order| order.order),
-        rows: lines.iter().zip(input.observed).map(line).collect(),
+        rows: lines
+            .iter()
+            .zip(input.observed)
+            .map(|(row, observed)| line(row, observed))
+            .collect(),
         worst,
         widest_band95_deg,
         coefficients,
@@ -211,7 +215,7 @@ fn widest(curve: &[DeviationRow], limit_deg: f64) -> Result<f64, Refusal> {
     Ok(widest_deg)
 }
 
-fn line((row, observed): (&DeviationRow, Observed)) -> CardRow {
+fn line(row: &DeviationRow, observed: Observed) -> CardRow {
     CardRow {
         compass_deg: row.compass_deg,
         magnetic_deg: row.magnetic_deg,

@@ -176,7 +176,11 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let settings = settings::find(db, id).await?;
     let last = vessel.last_position();
     let last_at = last.map_or(model.place_at, |last| last.at);
-    let last = last.map_or((model.lat, model.lon), |last| (last.lat, last.lon));
+    let last = match last {
+        Some(last) => Position::new(last.lat, last.lon),
+        None => Position::new(model.lat, model.lon),
+    };
+    let last = last.map_err(anyhow::Error::from)?;
     let position = deviation_table::position(query.lat, query.lon, last)?;
     let place = place(position, query.at(&model, last_at)?, &settings)?;
     let now = app.clock.now().into();

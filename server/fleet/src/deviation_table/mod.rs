@@ -104,22 +104,23 @@ async fn find_deviation(
 
 impl Query {
     fn place(&self, model: &models::StoredModel) -> Result<(Position, Timestamp)> {
-        let position = position(self.lat, self.lon, (model.lat, model.lon))?;
+        let last = Position::new(model.lat, model.lon).map_err(anyhow::Error::from)?;
+        let position = position(self.lat, self.lon, last)?;
         let at = time("at", self.at.as_deref())?.unwrap_or(model.place_at.0);
         Ok((position, at))
     }
 }
 
-/// Returns the requested place, or else the last one, degrees north and east.
+/// Returns the requested place, degrees north and east, or else the last one.
 ///
 /// # Errors
-/// Fails when the place is invalid or incomplete.
-pub fn position(lat: Option<f64>, lon: Option<f64>, last: (f64, f64)) -> Result<Position> {
+/// Fails when the requested place is invalid or incomplete.
+pub fn position(lat: Option<f64>, lon: Option<f64>, last: Position) -> Result<Position> {
     match (lat, lon) {
         (Some(lat), Some(lon)) => {
             Position::new(lat, lon).map_err(|error| invalid("lat, lon", &error))
         }
-        (None, None) => Ok(Position::new(last.0, last.1).map_err(anyhow::Error::from)?),
+        (None, None) => Ok(last),
         _ => Err(invalid("lat, lon", &"one without the other")),
     }
 }

@@ -61,8 +61,7 @@ async fn list_logbook(
 ) -> Result<Json<LogbookList>> {
     vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
     let filter = filter.checked()?;
-    let after = page.after_time()?;
-    let found = store::list(&app.db, id, &filter, after, page.fetch()).await?;
+    let found = store::list(&app.db, id, &filter, &page).await?;
     let listed = page.cut(found, LogbookEntry::cursor);
     Ok(Json(LogbookList {
         items: listed.items,

@@ -9,6 +9,7 @@ use binnacle_platform::audit::RequestContext;
 use binnacle_platform::db::{Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::events::{self, Kind};
+use binnacle_platform::http::Page;
 use binnacle_platform::ids::{CompassId, EntryId, UserId, VesselId};
 use binnacle_platform::session;
 use binnacle_platform::time::Time;
@@ -173,10 +174,9 @@ pub(super) async fn list(
     db: &Db,
     vessel: VesselId,
     filter: &CheckedFilter,
-    after: Option<(i64, Uuid)>,
-    limit: i64,
+    page: &Page,
 ) -> Result<Vec<LogbookEntry>> {
-    let (before, before_id) = after.unwrap_or((i64::MAX, Uuid::max()));
+    let (before, before_id) = page.after_time()?.unwrap_or((i64::MAX, Uuid::max()));
     let found = rows!(
         db,
         Row,
@@ -200,7 +200,7 @@ pub(super) async fn list(
         filter.from.map_or(i64::MIN, |time| time.0.micros()),
         filter.to.map_or(i64::MAX, |time| time.0.micros()),
         filter.withdrawn,
-        limit
+        page.fetch()
     )?;
     found.into_iter().map(Row::read).collect()
 }

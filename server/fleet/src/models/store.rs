@@ -176,14 +176,14 @@ pub async fn card_withdrawn(
 ) -> Result<Option<CardWithdrawn>> {
     let found = row!(
         db,
-        (Option<Time>, Option<String>),
+        StoredWithdrawal,
         "SELECT card_withdrawn_at, card_withdrawn_by FROM analyses
          WHERE vessel_id = $1 AND compass_id = $2
          ORDER BY compass_id",
         vessel,
         compass
     )?;
-    Ok(found.and_then(read_withdrawn))
+    Ok(found.and_then(StoredWithdrawal::read))
 }
 
 /// Does what [`card_withdrawn`] does, within a transaction.
@@ -194,21 +194,30 @@ pub async fn card_withdrawn_in(
 ) -> Result<Option<CardWithdrawn>> {
     let found = row!(
         in tx,
-        (Option<Time>, Option<String>),
+        StoredWithdrawal,
         "SELECT card_withdrawn_at, card_withdrawn_by FROM analyses
          WHERE vessel_id = $1 AND compass_id = $2
          ORDER BY compass_id",
         vessel,
         compass
     )?;
-    Ok(found.and_then(read_withdrawn))
+    Ok(found.and_then(StoredWithdrawal::read))
 }
 
-fn read_withdrawn((since, reason): (Option<Time>, Option<String>)) -> Option<CardWithdrawn> {
-    Some(CardWithdrawn {
-        since: since?.0,
-        reason: reason?,
-    })
+/// Columns of a withdrawn card.
+#[derive(sqlx::FromRow)]
+struct StoredWithdrawal {
+    card_withdrawn_at: Option<Time>,
+    card_withdrawn_by: Option<String>,
+}
+
+impl StoredWithdrawal {
+    fn read(self) -> Option<CardWithdrawn> {
+        Some(CardWithdrawn {
+            since: self.card_withdrawn_at?.0,
+            reason: self.card_withdrawn_by?,
+        })
+    }
 }
 
 /// Returns the compass's highest model if an adjustment predicted it and no heading at sea

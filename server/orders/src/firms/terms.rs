@@ -152,7 +152,10 @@ struct TermsList {
     responses((status = 200, body = TermsList), (status = 401, body = Problem)))]
 async fn list_terms(State(app): State<App>, reader: Reader) -> Result<Json<TermsList>> {
     let items = of_operator(&app.db, reader.operator).await?;
-    let items = items.into_iter().map(FirmWithTerms::new).collect();
+    let items = items
+        .into_iter()
+        .map(|(firm, name, terms)| FirmWithTerms::new(firm, name, terms))
+        .collect();
     Ok(Json(TermsList { items }))
 }
 
@@ -209,7 +212,7 @@ async fn set_terms(
     })
     .await?;
     tx.commit().await?;
-    Ok(Json(FirmWithTerms::new((firm, name, Some(terms)))))
+    Ok(Json(FirmWithTerms::new(firm, name, Some(terms))))
 }
 
 /// Remove the terms of a firm for you
@@ -239,7 +242,7 @@ async fn end_terms(
 }
 
 impl FirmWithTerms {
-    fn new((firm_id, firm_name, terms): (FirmId, String, Option<Terms>)) -> FirmWithTerms {
+    fn new(firm_id: FirmId, firm_name: String, terms: Option<Terms>) -> FirmWithTerms {
         let none = || vec!["terms: no terms are set".to_owned()];
         FirmWithTerms {
             firm_id,

@@ -28,7 +28,7 @@ pub(crate) async fn once(
     };
     let known = row!(
         in &mut *tx,
-        (Vec<u8>, Uuid),
+        KnownRequest,
         "SELECT request_hash, entry_id FROM work_order_keys
          WHERE vessel_id = $1 AND order_id = $2 AND tenant_id = $3 AND key_hash = $4
          ORDER BY key_hash",
@@ -37,8 +37,8 @@ pub(crate) async fn once(
         tenant.id(),
         key_hash.as_slice()
     )?;
-    if let Some(written) = same(known, request_hash)? {
-        return Ok(written);
+    if let Some(known) = known {
+        return known.entry_of(request_hash);
     }
     execute!(
         tx,
@@ -71,7 +71,7 @@ pub(crate) async fn find(
     };
     let known = row!(
         db,
-        (Vec<u8>, Uuid),
+        KnownRequest,
         "SELECT request_hash, entry_id FROM work_order_keys
          WHERE vessel_id = $1 AND order_id = $2 AND tenant_id = $3 AND key_hash = $4
          ORDER BY key_hash",
@@ -80,12 +80,26 @@ pub(crate) async fn find(
         tenant.id(),
         key_hash.as_slice()
     )?;
-    same(known, request_hash)
+    known.map(|known| known.entry_of(request_hash)).transpose()
 }
 
-fn same(known: Option<(Vec<u8>, Uuid)>, request_hash: &[u8]) -> Result<Option<Uuid>> {
-    match known {
-        Some((made_for, _)) if made_for != request_hash => Err(Error::KeyReused),
-        known => Ok(known.map(|(_, entry)| entry)),
+/// Request that a key was used for before.
+#[derive(sqlx::FromRow)]
+struct KnownRequest {
+    request_hash: Vec<u8>,
+    entry_id: Uuid,
+}
+
+impl KnownRequest {
+    /// Returns the entry that the request wrote.
+    ///
+    /// # Errors
+    /// When the key was used for another request.
+    fn entry_of(self, request_hash: &[u8]) -> Result<Uuid> {
+        if self.request_hash == request_hash {
+            Ok(self.entry_id)
+        } else {
+            Err(Error::KeyReused)
+        }
     }
 }
