@@ -148,13 +148,13 @@ async fn dismiss_firm(
         return Err(Error::NotFound("firm"));
     }
     if orders > 0 {
-        let orders = match orders {
-            1 => "one order".to_owned(),
-            more => format!("{more} orders"),
+        let open_orders = match orders {
+            1 => "one order is".to_owned(),
+            more => format!("{more} orders are"),
         };
         return Err(Error::WrongState(format!(
-            "the firm has been offered {orders} of the operator, or has them: cancel them, or \
-                have them given back, first"
+            "{open_orders} still open with the firm (offered or accepted): cancel first, or \
+             ask the firm to return what it has"
         )));
     }
     tx.commit().await?;

@@ -70,7 +70,10 @@ async fn a_firm_with_an_open_order_cannot_be_disengaged(server: TestServer) {
     for firm in [offered, waiting] {
         let refused = part(*firm).await;
         assert_eq!(refused.problem(), "wrong-state");
-        assert!(refused.text.contains("asked for one order"), "{refused:?}");
+        assert!(
+            refused.text.contains("one order is still open"),
+            "{refused:?}"
+        );
     }
     parties.post(rosa, "/accept", &json!({})).await.good();
     // The waiting firm gets the offer when the first firm gives the order back.
