@@ -117,3 +117,11 @@ CREATE TABLE work_order_keys (
     PRIMARY KEY (vessel_id, order_id, tenant_id, key_hash),
     FOREIGN KEY (vessel_id, order_id) REFERENCES work_orders (vessel_id, id)
 );
+
+-- The port call of a work order. The row may be written before its order.
+CREATE TABLE schedule_orders (
+    vessel_id UUID NOT NULL,
+    order_id UUID NOT NULL,
+    call_id UUID NOT NULL,
+    PRIMARY KEY (vessel_id, order_id)
+);

@@ -1,56 +1,5 @@
--- Planning: port calls, the need to adjust each compass, the schedule, calendar feeds,
--- notifications and reports.
-
--- Port calls as they now stand. They are never removed: a call is revised, or withdrawn
--- and kept.
-CREATE TABLE port_calls (
-    vessel_id UUID NOT NULL REFERENCES vessels (id),
-    id UUID NOT NULL,
-    reference TEXT NOT NULL, -- identifier at its source
-    port TEXT NOT NULL, -- UN/LOCODE
-    berth TEXT,
-    eta BIGINT NOT NULL,
-    eta_uncertainty_h DOUBLE PRECISION NOT NULL,
-    etd BIGINT NOT NULL CHECK (etd > eta),
-    etd_uncertainty_h DOUBLE PRECISION NOT NULL,
-    berth_heading_deg DOUBLE PRECISION, -- as announced
-    lay_heading_deg DOUBLE PRECISION, -- as measured alongside
-    source TEXT NOT NULL CHECK (source IN ('api', 'csv', 'icalendar')),
-    revision BIGINT NOT NULL, -- from 1
-    created_at BIGINT NOT NULL,
-    created_by TEXT NOT NULL,
-    revised_at BIGINT,
-    revised_by TEXT,
-    withdrawn_at BIGINT,
-    withdrawn_by TEXT,
-    withdrawal_reason TEXT,
-    PRIMARY KEY (vessel_id, id),
-    UNIQUE (vessel_id, reference),
-    CHECK ((withdrawn_at IS NULL) = (withdrawn_by IS NULL))
-);
-CREATE INDEX port_calls_by_time ON port_calls (vessel_id, eta, id);
-
--- Each revision of a call as written. Rows are never changed or removed.
-CREATE TABLE port_call_revisions (
-    vessel_id UUID NOT NULL,
-    call_id UUID NOT NULL,
-    revision BIGINT NOT NULL,
-    at BIGINT NOT NULL,
-    source TEXT NOT NULL CHECK (source IN ('api', 'csv', 'icalendar')),
-    author_id UUID NOT NULL,
-    author_name TEXT NOT NULL,
-    call TEXT NOT NULL, -- JSON
-    PRIMARY KEY (vessel_id, call_id, revision),
-    FOREIGN KEY (vessel_id, call_id) REFERENCES port_calls (vessel_id, id)
-);
-
--- Particulars of a vessel that adjustment rules depend on.
-CREATE TABLE vessel_particulars (
-    vessel_id UUID NOT NULL PRIMARY KEY REFERENCES vessels (id),
-    particulars TEXT NOT NULL, -- JSON
-    changed_at BIGINT NOT NULL,
-    changed_by TEXT NOT NULL
-);
+-- Planning: the need to adjust each compass, the schedule, calendar feeds, notifications and
+-- reports.
 
 -- History of the greatest deviation at the vessel's place: it was at least this great at
 -- every check since that day. Later days have higher levels. Days over a limit are
@@ -127,14 +76,6 @@ CREATE TABLE schedule_pins (
     created_by TEXT NOT NULL,
     PRIMARY KEY (vessel_id, compass_id),
     FOREIGN KEY (vessel_id, compass_id) REFERENCES compasses (vessel_id, id)
-);
-
--- The port call of a work order. The row may be written before its order.
-CREATE TABLE schedule_orders (
-    vessel_id UUID NOT NULL,
-    order_id UUID NOT NULL,
-    call_id UUID NOT NULL,
-    PRIMARY KEY (vessel_id, order_id)
 );
 
 -- Calendars that programs subscribe to. The address of each is its secret.
