@@ -31,7 +31,7 @@ pub use after_adjustment::list_in_force;
 pub use alert::{Alert, Evidence, State};
 pub use api::router;
 pub use cause::Cause;
-pub use causes::{Effect, JobAtRisk, UnconfirmedAdjustment};
+pub use causes::{CardEffect, JobAtRisk, PlanEffect, UnconfirmedAdjustment};
 pub use reconcile::end_all;
 pub use sources::{
     check_duplicate_agent, check_silence, check_timed, end_duplicate_agent, reconcile_analysis,

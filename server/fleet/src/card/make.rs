@@ -12,7 +12,7 @@ use super::due::{self, next_due};
 use super::observed::{Observed, STEP_DEG};
 use super::refusal::{OLDEST_DAYS, Refusal};
 use crate::adjustments::CompletedOrder;
-use crate::alerts::{Effect, OpenAlert};
+use crate::alerts::{CardEffect, OpenAlert};
 use crate::binnacles::StoredRevision;
 use crate::compasses::Compass;
 use crate::deviation::{self, DeviationRow};
@@ -179,7 +179,7 @@ fn unverified<'a>(
 /// Fails while an alert blocks the card: no model describes a stuck compass, or one that has parted
 /// from the gyro.
 fn not_suspected(alerts: &[OpenAlert]) -> Result<(), Refusal> {
-    let blocks = |alert: &&OpenAlert| alert.cause.effect_on_card() == Effect::Block;
+    let blocks = |alert: &&OpenAlert| alert.cause.effect_on_card() == CardEffect::Block;
     match alerts.iter().find(blocks) {
         Some(alert) => Err(Refusal::CompassSuspected {
             summary: alert.summary.clone(),
@@ -292,7 +292,7 @@ fn notes(model: &StoredModel, alerts: &[OpenAlert], cargo: &[MagneticCargo]) -> 
     notes.extend(
         alerts
             .iter()
-            .filter(|alert| alert.cause.effect_on_card() == Effect::Note)
+            .filter(|alert| alert.cause.effect_on_card() == CardEffect::Note)
             .map(|alert| alert.summary.clone()),
     );
     if !cargo.is_empty() {

@@ -9,7 +9,7 @@ use binnacle_adjustment::adjust::{
     Outcome, UpdatedPrediction, check_total_turn, plan, predict_by_compass,
 };
 use binnacle_compass::logbook::LogbookKind;
-use binnacle_fleet::alerts::{self, Effect};
+use binnacle_fleet::alerts::{self, PlanEffect};
 use binnacle_fleet::binnacles;
 use binnacle_fleet::logbook;
 use binnacle_fleet::models;
@@ -237,7 +237,7 @@ pub(crate) async fn offer_plans(
     }
     let notes = alerts
         .iter()
-        .filter(|alert| alert.cause.effect_on_plan() == Effect::Note);
+        .filter(|alert| alert.cause.effect_on_plan() == PlanEffect::Note);
     let notes =
         notes.map(|alert| format!("an alert about this compass is open: {}", alert.summary));
     outcome.notes.splice(0..0, notes);

@@ -1,7 +1,7 @@
 //! Adjustments that headings at sea contradict, or that no longer fit the schedule.
 
 use super::facts::{JobAtRisk, UnconfirmedAdjustment};
-use super::row::{CauseRow, Condition, Effect, Ending, Finder};
+use super::row::{CardEffect, CauseRow, Condition, Ending, Finder, PlanEffect};
 use crate::alerts::cause::Cause;
 use crate::alerts::desired::EventWindow;
 use binnacle_platform::severity::Severity;
@@ -16,8 +16,8 @@ pub(super) const ADJUSTMENT_NOT_CONFIRMED: CauseRow = CauseRow {
         "Do not use the predicted card. Take azimuths on all headings, check that the correctors \
          stand as recorded, and have the ship swung or adjusted again."
     },
-    on_card: Effect::Note,
-    on_plan: Effect::Note,
+    on_card: CardEffect::Note,
+    on_plan: PlanEffect::Note,
     ending: Ending::NotFound,
     ends_with_adjustment: true,
     is_redated: false,
@@ -33,8 +33,8 @@ pub(super) const AGREED_JOB_AT_RISK: CauseRow = CauseRow {
         "Agree on another time with the firm, or cancel its order and offer the job as it is \
          scheduled now."
     },
-    on_card: Effect::None,
-    on_plan: Effect::None,
+    on_card: CardEffect::None,
+    on_plan: PlanEffect::None,
     ending: Ending::NotFound,
     ends_with_adjustment: false,
     is_redated: false,

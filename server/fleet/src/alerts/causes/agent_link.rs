@@ -1,7 +1,7 @@
 //! Silent agents, and agents that two computers run.
 
 use super::facts::{Silence, StreamConflict};
-use super::row::{CauseRow, Condition, Effect, Ending, Finder};
+use super::row::{CardEffect, CauseRow, Condition, Ending, Finder, PlanEffect};
 use crate::alerts::cause::Cause;
 use binnacle_platform::severity::Severity;
 
@@ -19,8 +19,8 @@ pub(super) const SILENT_AGENT: CauseRow = CauseRow {
         "Ask the ship whether the agent's computer is on and what its page says of the link. Its \
          samples are kept on board and uploaded later."
     },
-    on_card: Effect::None,
-    on_plan: Effect::None,
+    on_card: CardEffect::None,
+    on_plan: PlanEffect::None,
     ending: Ending::NotFound,
     ends_with_adjustment: false,
     is_redated: false,
@@ -37,8 +37,8 @@ pub(super) const CLONED_AGENT: CauseRow = CauseRow {
          be settled from ashore, revoke the agent and enrol the right one again: its data is kept. \
          Until then the samples of both are used."
     },
-    on_card: Effect::None,
-    on_plan: Effect::None,
+    on_card: CardEffect::None,
+    on_plan: PlanEffect::None,
     ending: Ending::Quiet {
         seconds: SHOWN_FOR_S,
     },

@@ -4,7 +4,7 @@
 //! without a further report, by the ship's samples or the clock.
 
 use super::facts::AgentReports;
-use super::row::{Case, CauseRow, Condition, Effect, Ending, Finder, Size};
+use super::row::{CardEffect, Case, CauseRow, Condition, Ending, Finder, PlanEffect, Size};
 use crate::alerts::alert::{KnownAlert, State};
 use crate::alerts::cause::Cause;
 use crate::alerts::desired::EventWindow;
@@ -26,8 +26,8 @@ pub(super) const REPORTED_BY_AGENT: CauseRow = CauseRow {
     finders: &[Finder::AgentReports(reported)],
     severity,
     advice,
-    on_card: Effect::Block,
-    on_plan: Effect::Note,
+    on_card: CardEffect::Block,
+    on_plan: PlanEffect::Note,
     ending: Ending::Quiet { seconds: QUIET_S },
     // Reports that suspect the gyro outlast an adjustment: the agent's reports tell.
     ends_with_adjustment: false,

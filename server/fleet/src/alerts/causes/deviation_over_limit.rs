@@ -2,7 +2,7 @@
 
 use super::facts::Situation;
 use super::hysteresis::{compare, hysteresis_deg};
-use super::row::{CauseRow, Condition, Effect, Ending, Finder, Size};
+use super::row::{CardEffect, CauseRow, Condition, Ending, Finder, PlanEffect, Size};
 use crate::alerts::cause::Cause;
 use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
@@ -17,9 +17,9 @@ pub(super) const DEVIATION_OVER_LIMIT: CauseRow = CauseRow {
         "Steer by the corrected heading or the gyro, check the compass error by azimuth once a \
          watch, and have the compass adjusted."
     },
-    on_card: Effect::Note,
+    on_card: CardEffect::Note,
     // An adjustment removes its cause.
-    on_plan: Effect::None,
+    on_plan: PlanEffect::None,
     ending: Ending::NotMeasured(|findings| findings.worst.is_some()),
     ends_with_adjustment: true,
     is_redated: false,

@@ -1,7 +1,7 @@
 //! Disturbances from outside the ship. They pass, and affect neither card nor plan.
 
 use super::change_rules::{advice, by_size, condition};
-use super::row::{CauseRow, Effect, Ending, Finder};
+use super::row::{CardEffect, CauseRow, Ending, Finder, PlanEffect};
 use crate::alerts::cause::Cause;
 
 /// The earth's crust, at a place.
@@ -32,8 +32,8 @@ const DISTURBANCE: CauseRow = CauseRow {
     finders: &[Finder::Change(condition)],
     severity: by_size,
     advice,
-    on_card: Effect::None,
-    on_plan: Effect::None,
+    on_card: CardEffect::None,
+    on_plan: PlanEffect::None,
     ending: Ending::WithChange,
     ends_with_adjustment: false,
     is_redated: true,

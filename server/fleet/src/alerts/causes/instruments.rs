@@ -2,7 +2,7 @@
 
 use super::change_rules::{condition, stage};
 use super::facts::{DetectedChange, Situation, Stage};
-use super::row::{Case, CauseRow, Condition, Effect, Ending, Finder};
+use super::row::{CardEffect, Case, CauseRow, Condition, Ending, Finder, PlanEffect};
 use crate::alerts::cause::Cause;
 use crate::analysis::{FailedLately, Findings};
 use binnacle_compass::result::Change;
@@ -49,8 +49,8 @@ pub(super) const REFERENCE_FAULT: CauseRow = CauseRow {
              compass itself is not suspected."
         }
     },
-    on_card: Effect::Note,
-    on_plan: Effect::Note,
+    on_card: CardEffect::Note,
+    on_plan: PlanEffect::Note,
     ending: Ending::WithChange,
     ends_with_adjustment: false,
     is_redated: false,
@@ -67,8 +67,8 @@ pub(super) const COMPASS_FAULT: CauseRow = CauseRow {
          liquid, and at the sensor and its cable. The samples taken meanwhile are left out of the \
          model."
     },
-    on_card: Effect::Block,
-    on_plan: Effect::Note,
+    on_card: CardEffect::Block,
+    on_plan: PlanEffect::Note,
     ending: Ending::WithChange,
     ends_with_adjustment: false,
     is_redated: false,

@@ -20,7 +20,7 @@ mod table;
 pub(super) use evaluate::{evaluate, evaluate_analysis};
 pub(super) use facts::{AgentReports, Facts, Silence, StreamConflict};
 pub use facts::{JobAtRisk, UnconfirmedAdjustment};
-pub use row::Effect;
+pub use row::{CardEffect, PlanEffect};
 pub(super) use row::{Ending, Source};
 pub(super) use table::CAUSES;
 

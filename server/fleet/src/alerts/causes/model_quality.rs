@@ -2,7 +2,7 @@
 
 use super::facts::Situation;
 use super::hysteresis::compare;
-use super::row::{CauseRow, Condition, Effect, Ending, Finder};
+use super::row::{CardEffect, CauseRow, Condition, Ending, Finder, PlanEffect};
 use crate::alerts::cause::Cause;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::severity::Severity;
@@ -21,8 +21,8 @@ pub(super) const NO_MODEL: CauseRow = CauseRow {
         "Use no earlier deviation card. Take azimuths, and steer the headings that are missing \
          where the passage allows."
     },
-    on_card: Effect::None,
-    on_plan: Effect::None,
+    on_card: CardEffect::None,
+    on_plan: PlanEffect::None,
     ending: Ending::NotFound,
     ends_with_adjustment: true,
     is_redated: false,
@@ -38,8 +38,8 @@ pub(super) const WIDE_BAND: CauseRow = CauseRow {
         "Take an azimuth before relying on the card on a heading that the vessel seldom steers. \
          The vessel's page shows which headings would help most."
     },
-    on_card: Effect::None,
-    on_plan: Effect::None,
+    on_card: CardEffect::None,
+    on_plan: PlanEffect::None,
     ending: Ending::NotMeasured(|findings| findings.widest_band95_deg.is_some()),
     ends_with_adjustment: true,
     is_redated: false,

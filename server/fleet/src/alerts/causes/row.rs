@@ -25,9 +25,9 @@ pub(in crate::alerts) struct CauseRow {
     /// Advice to the crew and the office.
     pub advice: fn(Case) -> &'static str,
     /// Effect of an open alert on the deviation card.
-    pub on_card: Effect,
+    pub on_card: CardEffect,
     /// Effect of an open alert on a corrector plan.
-    pub on_plan: Effect,
+    pub on_plan: PlanEffect,
     /// Rule by which it clears itself.
     pub ending: Ending,
     /// True if an adjustment ends it that came after its beginning.
@@ -69,15 +69,25 @@ pub(in crate::alerts) enum Source {
     Schedule,
 }
 
-/// Effect of an open alert on a document about its compass.
+/// Effect of an open alert on the deviation card of its compass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Effect {
+pub enum CardEffect {
     /// No effect.
     None,
-    /// The document carries the alert's summary as a note.
+    /// The card carries the alert's summary as a note.
     Note,
-    /// The document is refused.
+    /// The card is refused.
     Block,
+}
+
+/// Effect of an open alert on a corrector plan for its compass. No alert blocks a plan: an
+/// adjustment is the cure of many, and the adjuster decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlanEffect {
+    /// No effect.
+    None,
+    /// The plan carries the alert's summary as a note.
+    Note,
 }
 
 /// Rule by which an alert clears itself.

@@ -4,7 +4,7 @@
 
 use super::change_rules::{advice, by_size, condition};
 use super::facts::Stage;
-use super::row::{Case, CauseRow, Effect, Ending, Finder};
+use super::row::{CardEffect, Case, CauseRow, Ending, Finder, PlanEffect};
 use crate::alerts::cause::Cause;
 
 /// A strike or a heavy blow.
@@ -68,8 +68,8 @@ const SHIP_CHANGE: CauseRow = CauseRow {
     finders: &[Finder::Change(condition)],
     severity: by_size,
     advice,
-    on_card: Effect::Note,
-    on_plan: Effect::Note,
+    on_card: CardEffect::Note,
+    on_plan: PlanEffect::Note,
     ending: Ending::WithChange,
     ends_with_adjustment: true,
     is_redated: true,

@@ -1,6 +1,6 @@
 //! Rows of all causes, and access to the row of one.
 
-use super::row::{CauseRow, Effect};
+use super::row::{CardEffect, CauseRow, PlanEffect};
 use super::{
     adjustments, agent_link, agent_reports, deviation_over_limit, disturbances, instruments,
     model_quality, ship_changes,
@@ -42,12 +42,12 @@ impl Cause {
     }
 
     /// Returns the effect of an open alert on the deviation card.
-    pub fn effect_on_card(self) -> Effect {
+    pub fn effect_on_card(self) -> CardEffect {
         self.row().on_card
     }
 
     /// Returns the effect of an open alert on a corrector plan.
-    pub fn effect_on_plan(self) -> Effect {
+    pub fn effect_on_plan(self) -> PlanEffect {
         self.row().on_plan
     }
 }

@@ -5,7 +5,7 @@ mod changes;
 mod figures;
 
 use super::CAUSES;
-use super::row::{Effect, Ending, Source};
+use super::row::{CardEffect, Ending, Source};
 use crate::alerts::cause::Cause;
 use std::collections::BTreeSet;
 use utoipa::PartialSchema;
@@ -51,7 +51,7 @@ fn only_what_goes_quiet_is_ended_by_the_clock() {
 
 #[test]
 fn only_a_compass_that_cannot_be_trusted_has_no_card() {
-    let blocked = CAUSES.iter().filter(|row| row.on_card == Effect::Block);
+    let blocked = CAUSES.iter().filter(|row| row.on_card == CardEffect::Block);
     let blocked: Vec<Cause> = blocked.map(|row| row.cause).collect();
     assert_eq!(blocked, [Cause::CompassFault, Cause::ReportedByAgent]);
 }
