@@ -1,7 +1,7 @@
 //! Creation of notifications from notices.
 //!
-//! What always holds: a notice becomes one notification for each person it concerns, in the
-//! transaction of the event itself. Each has the time at which mail is due, if any.
+//! Invariants: a notice becomes one notification for each person it concerns, in the transaction
+//! of the event itself. Each has the time at which mail is due, if any.
 
 use super::settings::Settings;
 use super::store;

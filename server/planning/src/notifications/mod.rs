@@ -1,6 +1,6 @@
 //! Notifications for each person: list, mail and digest.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - A notification is stored in the transaction of its event. The author of the event gets none.
 //! - Mail waits for the end of a person's quiet hours, or for their digest. Urgent mail waits for

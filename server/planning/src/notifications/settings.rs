@@ -1,7 +1,6 @@
 //! Notification settings of a person: ways of delivery, quiet hours and digest.
 //!
-//! What always holds: times of day are in the person's own time zone, also when its clocks
-//! change.
+//! Invariant: times of day are in the person's own time zone, also when its clocks change.
 
 use super::way::Way;
 use binnacle_platform::error::{Error, Result};

@@ -1,6 +1,6 @@
 //! Port calls of vessels, with the uncertainty of their times.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - Calls of one vessel do not overlap, and none is entered after its end. A change of a vessel's
 //!   calls locks the vessel's row until the transaction ends.
