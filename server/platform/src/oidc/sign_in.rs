@@ -145,7 +145,7 @@ async fn send_code(
     Valid(sent): Valid<Code>,
 ) -> Result<(HeaderMap, Json<User>)> {
     const OVER: Error = Error::Gone("this sign-in took too long; start again");
-    let attempt = Attempt::of(&app, &headers).ok_or(OVER)?;
+    let attempt = Attempt::from_headers(&app, &headers).ok_or(OVER)?;
     let (state, now) = (attempt.state_hash(), app.clock.now());
     let user = store::awaited(&app.db, &state, now.into()).await?;
     let user = user.ok_or(OVER)?;
@@ -184,7 +184,7 @@ async fn conclude(
     headers: &HeaderMap,
     query: CallbackQuery,
 ) -> Concluded {
-    let attempt = Attempt::of(app, headers).ok_or(Refusal::Over)?;
+    let attempt = Attempt::from_headers(app, headers).ok_or(Refusal::Over)?;
     // Hashes are compared, so that the timing does not reveal how much is right.
     let state = query.state.unwrap_or_default();
     if secret::hash(&state) != attempt.state_hash() {
