@@ -39,7 +39,7 @@ pub(super) const CLONED_AGENT: CauseRow = CauseRow {
     },
     on_card: Effect::None,
     on_plan: Effect::None,
-    ending: Ending::Quiet {
+    ending: Ending::AfterSilence {
         seconds: SHOWN_FOR_S,
     },
     ends_with_adjustment: false,
