@@ -68,15 +68,27 @@ fn fields_of(line: &str) -> Result<Vec<&str>> {
     Ok(body.split(',').collect())
 }
 
-/// Returns reading, deviation and variation; `None` if one is unknown.
-fn hdg(fields: &[&str]) -> Result<Option<(f64, f64, f64)>> {
+/// Fields of an HDG sentence, degrees, east positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Hdg {
+    compass_deg: f64,
+    deviation_deg: f64,
+    variation_deg: f64,
+}
+
+/// Returns the fields of HDG; `None` if one is unknown.
+fn hdg(fields: &[&str]) -> Result<Option<Hdg>> {
     ensure!(fields.len() == 6, "HDG has five fields: {fields:?}");
     if fields.iter().any(|field| field.is_empty()) {
         return Ok(None);
     }
-    let deviation = east(fields[2], fields[3])?;
-    let variation = east(fields[4], fields[5])?;
-    Ok(Some((fields[1].parse()?, deviation, variation)))
+    let deviation_deg = east(fields[2], fields[3])?;
+    let variation_deg = east(fields[4], fields[5])?;
+    Ok(Some(Hdg {
+        compass_deg: fields[1].parse()?,
+        deviation_deg,
+        variation_deg,
+    }))
 }
 
 fn east(degrees: &str, side: &str) -> Result<f64> {
@@ -95,16 +107,12 @@ fn ths(fields: &[&str]) -> Option<f64> {
 }
 
 /// Combines all three sentences, when each has its values.
-fn correction(
-    hdg: Option<(f64, f64, f64)>,
-    ths: Option<f64>,
-    pbinq: &[&str],
-) -> Option<Correction> {
-    let (compass_deg, deviation_deg, variation_deg) = hdg?;
+fn correction(hdg: Option<Hdg>, ths: Option<f64>, pbinq: &[&str]) -> Option<Correction> {
+    let hdg = hdg?;
     Some(Correction {
-        compass_deg,
-        deviation_deg,
-        variation_deg,
+        compass_deg: hdg.compass_deg,
+        deviation_deg: hdg.deviation_deg,
+        variation_deg: hdg.variation_deg,
         true_deg: ths?,
         model_version: pbinq.get(2)?.parse().ok()?,
         standard_error_deg: pbinq.get(4)?.parse().ok()?,
@@ -120,7 +128,14 @@ mod tests {
         let line = "$IIHDG,101.5,2.0,W,3.5,E*5A";
         assert!(fields_of("$IIHDG,101.5,2.0,W,3.5,E*00").is_err());
         let reading = hdg(&fields_of(line).unwrap()).unwrap();
-        assert_eq!(reading, Some((101.5, -2.0, 3.5)));
+        assert_eq!(
+            reading,
+            Some(Hdg {
+                compass_deg: 101.5,
+                deviation_deg: -2.0,
+                variation_deg: 3.5
+            })
+        );
         assert_eq!(ths(&["IITHS", "103.0", "E"]), Some(103.0));
         assert_eq!(ths(&["IITHS", "", "V"]), None);
         let quality = ["PBINQ", "A", "3", "1.0", "0.25"];

@@ -13,8 +13,8 @@ pub(super) async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::
         &config.uplink.connection_policy(),
     )?;
     let spool = Spool::open(&config.data_dir).await?;
-    let answer = match client.enrol(&server, code.trim()).await {
-        Ok(answer) => answer,
+    let response = match client.enrol(&server, code.trim()).await {
+        Ok(response) => response,
         Err(
             error @ (RequestError::Unauthorized(_)
             | RequestError::NotFound(_)
@@ -24,15 +24,18 @@ pub(super) async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::
         }
         Err(error) => anyhow::bail!("{server}: {error}"),
     };
-    let said = format!("enrolled: {}, {}", answer.vessel_name, answer.compass_name);
+    let said = format!(
+        "enrolled: {}, {}",
+        response.vessel_name, response.compass_name
+    );
     spool
         .enrol(&Identity {
             server,
-            token: answer.token,
+            token: response.token,
             other_token: None,
-            stream: answer.stream,
-            vessel_name: answer.vessel_name,
-            compass_name: answer.compass_name,
+            stream: response.stream,
+            vessel_name: response.vessel_name,
+            compass_name: response.compass_name,
         })
         .await?;
     writeln!(std::io::stdout(), "{said}")?;

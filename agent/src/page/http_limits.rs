@@ -147,9 +147,9 @@ mod tests {
         let mut connection = TcpStream::connect(address).await.unwrap();
         let request = b"GET / HTTP/1.1\r\nhost: a\r\nconnection: close\r\n\r\n";
         connection.write_all(request).await.unwrap();
-        let mut answer = String::new();
-        connection.read_to_string(&mut answer).await.unwrap();
-        assert!(answer.ends_with("here"), "{answer}");
+        let mut response = String::new();
+        connection.read_to_string(&mut response).await.unwrap();
+        assert!(response.ends_with("here"), "{response}");
         // The first connection was closed.
         let mut rest = Vec::new();
         let read = idle_timer[0].read_to_end(&mut rest).await;

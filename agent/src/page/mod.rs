@@ -136,8 +136,8 @@ pub(crate) mod tests {
             ("x-binnacle-request", "1"),
             ("origin", "http://192.168.1.9:8090"),
         ];
-        let answer = router.oneshot(exclusion(&own)).await.unwrap();
-        assert_eq!(answer.status(), StatusCode::OK);
+        let response = router.oneshot(exclusion(&own)).await.unwrap();
+        assert_eq!(response.status(), StatusCode::OK);
         assert_eq!(*page.exclusion.borrow(), Some(Exclusion::Berthed));
         assert_eq!(
             page.spool.exclusion().await.unwrap(),
@@ -157,8 +157,8 @@ pub(crate) mod tests {
             &[("origin", "null"), ("x-binnacle-request", "1")],
         ];
         for headers in tricks {
-            let answer = router.clone().oneshot(exclusion(headers)).await.unwrap();
-            assert_eq!(answer.status(), StatusCode::FORBIDDEN, "{headers:?}");
+            let response = router.clone().oneshot(exclusion(headers)).await.unwrap();
+            assert_eq!(response.status(), StatusCode::FORBIDDEN, "{headers:?}");
         }
         assert_eq!(*page.exclusion.borrow(), None);
     }
@@ -176,8 +176,8 @@ pub(crate) mod tests {
         ] {
             let request = Request::get("/api/status").header("host", host);
             let request = request.body(Body::empty()).unwrap();
-            let answer = router.clone().oneshot(request).await.unwrap();
-            assert_eq!(answer.status(), status, "{host}");
+            let response = router.clone().oneshot(request).await.unwrap();
+            assert_eq!(response.status(), status, "{host}");
         }
     }
 

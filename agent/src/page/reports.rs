@@ -127,8 +127,8 @@ mod tests {
     #[tokio::test]
     async fn a_report_is_kept_trimmed_and_listed_and_wakes_the_uplink() {
         let (_directory, page, router) = page().await;
-        let answer = send(&router, put(PATH, &OWN, &cargo())).await;
-        assert_eq!(answer.status(), StatusCode::OK);
+        let response = send(&router, put(PATH, &OWN, &cargo())).await;
+        assert_eq!(response.status(), StatusCode::OK);
         page.upload_wakeup.notified().await;
         let stored = page.spool.next_report().await.unwrap().unwrap();
         assert_eq!(stored.sent.report.hatch.as_deref(), Some("2"));
@@ -136,8 +136,8 @@ mod tests {
         assert_eq!(stored.state, ReportState::Waiting);
 
         let list = Request::get("/api/reports").header("host", "localhost");
-        let answer = send(&router, list.body(Body::empty()).unwrap()).await;
-        let listed = body::to_bytes(answer.into_body(), 1 << 16).await.unwrap();
+        let response = send(&router, list.body(Body::empty()).unwrap()).await;
+        let listed = body::to_bytes(response.into_body(), 1 << 16).await.unwrap();
         let listed: Value = serde_json::from_slice(&listed).unwrap();
         assert_eq!(listed[0]["standing"], "waiting");
         assert_eq!(listed[0]["cargo"], "scrap");
@@ -155,8 +155,8 @@ mod tests {
             &[("x-binnacle-request", "1"), ("origin", "null")],
         ];
         for headers in tricks {
-            let answer = send(&router, put(PATH, headers, &cargo())).await;
-            assert_eq!(answer.status(), StatusCode::FORBIDDEN, "{headers:?}");
+            let response = send(&router, put(PATH, headers, &cargo())).await;
+            assert_eq!(response.status(), StatusCode::FORBIDDEN, "{headers:?}");
         }
         assert!(page.spool.reports().await.unwrap().is_empty());
     }
@@ -173,15 +173,19 @@ mod tests {
         ] {
             let mut body = cargo();
             body[field] = value;
-            let answer = send(&router, put(PATH, &OWN, &body)).await;
-            assert_eq!(answer.status(), StatusCode::UNPROCESSABLE_ENTITY, "{field}");
+            let response = send(&router, put(PATH, &OWN, &body)).await;
+            assert_eq!(
+                response.status(),
+                StatusCode::UNPROCESSABLE_ENTITY,
+                "{field}"
+            );
         }
         let mut large = cargo();
         large["note"] = json!("x".repeat(20_000));
-        let answer = send(&router, put(PATH, &OWN, &large)).await;
-        assert_eq!(answer.status(), StatusCode::PAYLOAD_TOO_LARGE);
-        let answer = send(&router, put("/api/reports/x", &OWN, &cargo())).await;
-        assert_eq!(answer.status(), StatusCode::BAD_REQUEST);
+        let response = send(&router, put(PATH, &OWN, &large)).await;
+        assert_eq!(response.status(), StatusCode::PAYLOAD_TOO_LARGE);
+        let response = send(&router, put("/api/reports/x", &OWN, &cargo())).await;
+        assert_eq!(response.status(), StatusCode::BAD_REQUEST);
         assert!(page.spool.reports().await.unwrap().is_empty());
     }
 }

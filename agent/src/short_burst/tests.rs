@@ -52,7 +52,7 @@ fn seqs(messages: &[Vec<u8>]) -> Vec<u64> {
     seqs.collect()
 }
 
-fn answer(directory: &Path, name: &str, message: &[u8]) {
+fn deliver(directory: &Path, name: &str, message: &[u8]) {
     let folder = directory.join("modem").join("in");
     std::fs::write(folder.join(name), message).unwrap();
 }
@@ -75,7 +75,7 @@ async fn each_batch_goes_out_once_and_stays_until_the_server_has_it() {
     assert!(sent.iter().all(|message| message.len() <= 340));
     assert_eq!(seqs(&sent), [1, 2]);
     assert_eq!(spool.status().await.unwrap().waiting_batches, 2);
-    answer(directory.path(), "1.sbd", &ack(7, 1));
+    deliver(directory.path(), "1.sbd", &ack(7, 1));
     exchange(&spool, &mut modem).await.unwrap();
     let status = spool.status().await.unwrap();
     assert_eq!((status.waiting_batches, status.contiguous_seq), (1, 1));
@@ -87,13 +87,13 @@ async fn each_batch_goes_out_once_and_stays_until_the_server_has_it() {
 }
 
 #[tokio::test]
-async fn an_answer_deletes_only_what_is_out_and_of_this_stream() {
+async fn an_acknowledgement_deletes_only_what_is_out_and_of_this_stream() {
     let (directory, spool, mut modem) = rig().await;
     seal(&spool, 0..1).await;
-    answer(directory.path(), "1.sbd", &ack(7, 9));
-    answer(directory.path(), "2.sbd", &ack(8, 9));
-    answer(directory.path(), "3.sbd", b"\xb2 not an answer");
-    answer(directory.path(), "4.sbd", &[0xb2; 5_000]);
+    deliver(directory.path(), "1.sbd", &ack(7, 9));
+    deliver(directory.path(), "2.sbd", &ack(8, 9));
+    deliver(directory.path(), "3.sbd", b"\xb2 not an answer");
+    deliver(directory.path(), "4.sbd", &[0xb2; 5_000]);
     exchange(&spool, &mut modem).await.unwrap();
     assert_eq!(spool.status().await.unwrap().waiting_batches, 1);
     assert_eq!(seqs(&outbox(directory.path())), [1]);

@@ -64,8 +64,8 @@ async fn open_checked(directory: &Path) -> anyhow::Result<Spool> {
         .fetch_one(&spool.pool)
         .await;
     let problem = match check {
-        Ok(answer) if answer == "ok" => return Ok(spool),
-        Ok(answer) => sqlx::Error::Decode(answer.into()),
+        Ok(outcome) if outcome == "ok" => return Ok(spool),
+        Ok(outcome) => sqlx::Error::Decode(outcome.into()),
         Err(error) => error,
     };
     spool.close().await;
@@ -74,7 +74,7 @@ async fn open_checked(directory: &Path) -> anyhow::Result<Spool> {
 
 fn is_damage(error: &sqlx::Error) -> bool {
     match error {
-        // An answer of `quick_check`, or invalid text.
+        // A result of `quick_check`, or invalid text.
         sqlx::Error::Decode(_) | sqlx::Error::ColumnDecode { .. } => true,
         sqlx::Error::Database(error) => {
             let code = error.code().and_then(|code| code.parse::<i32>().ok());

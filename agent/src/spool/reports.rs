@@ -140,9 +140,9 @@ impl Spool {
     pub(crate) async fn mark_report_delivered(
         &self,
         sent: &StoredReport,
-        answer: &LogbookAnswer,
+        response: &LogbookAnswer,
     ) -> sqlx::Result<()> {
-        let withdrawn = answer.withdrawn && !sent.sent.withdrawn;
+        let withdrawn = response.withdrawn && !sent.sent.withdrawn;
         let problem = withdrawn.then_some(WITHDRAWN_BY_SERVER);
         self.set_report_state(sent, ReportState::Ashore, problem)
             .await
@@ -280,7 +280,7 @@ mod tests {
             .await
     }
 
-    fn accepted_answer(revision: u32) -> LogbookAnswer {
+    fn accepted_response(revision: u32) -> LogbookAnswer {
         LogbookAnswer {
             revision,
             withdrawn: false,
@@ -307,12 +307,12 @@ mod tests {
         let changed = keep(&spool, "b", false).await.unwrap();
         assert_eq!(changed.sent.revision, 2);
         spool
-            .mark_report_delivered(&sent, &accepted_answer(1))
+            .mark_report_delivered(&sent, &accepted_response(1))
             .await
             .unwrap();
         assert_eq!(spool.next_report().await.unwrap(), Some(changed.clone()));
         spool
-            .mark_report_delivered(&changed, &accepted_answer(2))
+            .mark_report_delivered(&changed, &accepted_response(2))
             .await
             .unwrap();
         assert_eq!(spool.next_report().await.unwrap(), None);
@@ -362,7 +362,7 @@ mod tests {
             let report = lightning("x");
             let stored = spool.save_report(id, report, reporter, false, time());
             spool
-                .mark_report_delivered(&stored.await.unwrap(), &accepted_answer(1))
+                .mark_report_delivered(&stored.await.unwrap(), &accepted_response(1))
                 .await
                 .unwrap();
         }

@@ -30,9 +30,9 @@ impl Uplink {
         let result = self.client.put_report(identity, report).await;
         self.settle_cost(cost, result.as_ref().err()).await?;
         match result {
-            Ok(answer) => {
+            Ok(response) => {
                 if !self.has_changed_stream(identity).await? {
-                    self.spool.mark_report_delivered(report, &answer).await?;
+                    self.spool.mark_report_delivered(report, &response).await?;
                     tracing::info!(id = %report.id, "a report was delivered");
                 }
                 self.backoff.reset();

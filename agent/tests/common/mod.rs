@@ -48,8 +48,8 @@ pub(crate) async fn post(address: std::net::SocketAddr, path: &str, body: &str) 
         .header("content-type", "application/json")
         .header("x-binnacle-request", "1")
         .body(body.to_owned());
-    let answer = request.send().await.unwrap();
-    assert!(answer.status().is_success(), "{answer:?}");
+    let response = request.send().await.unwrap();
+    assert!(response.status().is_success(), "{response:?}");
 }
 
 /// Fetches a page as text.
@@ -57,6 +57,6 @@ pub(crate) async fn fetch(address: std::net::SocketAddr, path: &str) -> String {
     rustls::crypto::ring::default_provider()
         .install_default()
         .ok();
-    let answer = reqwest::get(format!("http://{address}{path}")).await;
-    answer.unwrap().text().await.unwrap()
+    let response = reqwest::get(format!("http://{address}{path}")).await;
+    response.unwrap().text().await.unwrap()
 }

@@ -86,7 +86,7 @@ impl TestServer {
             .collect()
     }
 
-    fn answer(&self, stored: &Stored) -> Downlink {
+    fn response(&self, stored: &Stored) -> Downlink {
         let contiguous = (1..).take_while(|seq| stored.batches.contains_key(seq));
         Downlink {
             contiguous_seq: contiguous.last().unwrap_or(0),
@@ -147,7 +147,7 @@ async fn put_batch(
         // Stored, but the response is lost on the way.
         return (StatusCode::BAD_GATEWAY, "lost").into_response();
     }
-    Json(server.answer(&stored)).into_response()
+    Json(server.response(&stored)).into_response()
 }
 
 async fn propose_token() -> Json<Value> {
@@ -164,5 +164,5 @@ async fn downlink(State(server): State<TestServer>) -> Response {
     if stored.down {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     }
-    Json(server.answer(&stored)).into_response()
+    Json(server.response(&stored)).into_response()
 }

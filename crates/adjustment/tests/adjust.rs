@@ -197,7 +197,7 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
 
 #[test]
 fn the_band_holds_and_little_is_left_on_ships_that_the_planner_never_saw() {
-    let tally = Tally::of(1000..1060, 0, FLUXGATE);
+    let tally = Tally::from_seeds(1000..1060, 0, FLUXGATE);
     println!("{tally}");
     assert!(tally.planned >= 30, "{tally}");
     assert!(tally.coverage() >= 0.92, "{tally}");

@@ -115,7 +115,9 @@ fn table_of_coverage(ships: u64) {
         };
         for days in [14.0, 60.0] {
             for variety in VARIETIES {
-                let tally = tally(0..ships, |seed| Tally::of(seed, variety, days, &faults));
+                let tally = tally(0..ships, |seed| {
+                    Tally::from_voyage(seed, variety, days, &faults)
+                });
                 print(&format!("{variety:?} {days} days"), &tally);
             }
         }
@@ -174,7 +176,7 @@ fn table_of_the_unusual(ships: u64) {
     for (name, days, faults) in cases {
         let tally = tally(5000..5000 + ships, |seed| {
             let variety = VARIETIES[(seed % 3) as usize];
-            Tally::of(seed, variety, days, &faults)
+            Tally::from_voyage(seed, variety, days, &faults)
         });
         print(name, &tally);
     }

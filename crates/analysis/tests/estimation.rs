@@ -15,7 +15,7 @@ use voyages::{Faults, Truth, Variety, predicted, sail, true_deviation};
 fn fleet(seeds: std::ops::Range<u64>, variety: Variety, days: f64, faults: &Faults) -> Tally {
     let mut sum = Tally::default();
     for seed in seeds {
-        sum.merge(&Tally::of(seed, variety, days, faults));
+        sum.merge(&Tally::from_voyage(seed, variety, days, faults));
     }
     sum
 }

@@ -31,8 +31,8 @@ pub(crate) fn checked(bytes: &[u8]) -> Result<&[u8], Rejected> {
     Ok(body)
 }
 
-/// The checksum of `body`.
-pub(crate) fn of(body: &[u8]) -> u8 {
+/// Computes the checksum of `body`.
+pub(crate) fn compute(body: &[u8]) -> u8 {
     body.iter().fold(0, |sum, byte| sum ^ byte)
 }
 
@@ -63,7 +63,7 @@ mod tests {
     fn a_checksum_is_read_in_either_case_and_checked() {
         assert_eq!(checked(b"HEHDT,274.07,T*13"), Err(Rejected::WrongChecksum));
         let mut line = b"HEHDT,274.07,T".to_vec();
-        append(of(&line), &mut line);
+        append(compute(&line), &mut line);
         assert_eq!(checked(&line), Ok(&b"HEHDT,274.07,T"[..]));
         let at = line.len() - 2;
         line[at..].make_ascii_lowercase();

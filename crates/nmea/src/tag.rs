@@ -70,7 +70,7 @@ pub fn write_tag(tag: &Tag<'_>, out: &mut Vec<u8>) {
         out.extend_from_slice(b"c:");
         print::digits(out, clock(micros.max(0)), 1);
     }
-    let sum = checksum::of(&out[start..]);
+    let sum = checksum::compute(&out[start..]);
     checksum::append(sum, out);
     out.push(b'\\');
 }
@@ -126,7 +126,7 @@ mod tests {
     use super::*;
 
     fn tagged(tag: &str) -> Vec<u8> {
-        let mut line = format!("\\{tag}*{:02X}\\", checksum::of(tag.as_bytes())).into_bytes();
+        let mut line = format!("\\{tag}*{:02X}\\", checksum::compute(tag.as_bytes())).into_bytes();
         line.extend_from_slice(b"$GPHDT,274.07,T*03");
         line
     }

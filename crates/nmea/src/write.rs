@@ -17,7 +17,7 @@ pub fn write(sentence: &Sentence, out: &mut Vec<u8>) {
     out.extend_from_slice(&sentence.talker);
     out.extend_from_slice(sentence.data.kind().name().as_bytes());
     fields(&sentence.data, out);
-    let sum = checksum::of(&out[start..]);
+    let sum = checksum::compute(&out[start..]);
     checksum::append(sum, out);
     out.extend_from_slice(b"\r\n");
 }

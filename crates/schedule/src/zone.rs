@@ -19,10 +19,10 @@ use std::sync::OnceLock;
 /// A zone of the IANA time zone database, as `Europe/Madrid`.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-pub struct Zone(&'static Known);
+pub struct Zone(&'static NamedZone);
 
 /// A name in the database, and the zone's rules, loaded at first use.
-struct Known {
+struct NamedZone {
     name: String,
     rules: OnceLock<TimeZone>,
 }
@@ -33,8 +33,8 @@ struct Known {
 pub struct ZoneError(String);
 
 /// Returns all zones, in the order of their names.
-fn all() -> &'static [Known] {
-    static ALL: OnceLock<Vec<Known>> = OnceLock::new();
+fn all() -> &'static [NamedZone] {
+    static ALL: OnceLock<Vec<NamedZone>> = OnceLock::new();
     ALL.get_or_init(|| {
         let mut names: Vec<String> = jiff::tz::db()
             .available()
@@ -42,11 +42,11 @@ fn all() -> &'static [Known] {
             .collect();
         names.sort_unstable();
         names.dedup();
-        let known = names.into_iter().map(|name| Known {
+        let zones = names.into_iter().map(|name| NamedZone {
             name,
             rules: OnceLock::new(),
         });
-        known.collect()
+        zones.collect()
     })
 }
 
@@ -62,7 +62,7 @@ impl Zone {
     /// # Errors
     /// When the database does not have it.
     pub fn find(name: &str) -> Result<Zone, ZoneError> {
-        let found = all().binary_search_by(|known| known.name.as_str().cmp(name));
+        let found = all().binary_search_by(|zone| zone.name.as_str().cmp(name));
         found
             .map(|at| Zone(&all()[at]))
             .map_err(|_| ZoneError(name.chars().take(40).collect()))

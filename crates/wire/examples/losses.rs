@@ -289,7 +289,7 @@ fn sail(seed: u64) -> Log {
             storms_per_month: 0.0,
             ..Faults::USUAL
         },
-        ..Plan::of(Event::Nothing, VARIETIES[(seed % 3) as usize])
+        ..Plan::new(Event::Nothing, VARIETIES[(seed % 3) as usize])
     };
     sail_log(9_000 + seed, &plan)
 }

@@ -63,7 +63,7 @@ impl Fonts {
         Ok(Fonts([load(Face::Regular)?, load(Face::Bold)?]))
     }
 
-    fn of(&self, face: Face) -> Font {
+    fn font(&self, face: Face) -> Font {
         let Fonts([regular, bold]) = self;
         match face {
             Face::Regular => regular.clone(),
@@ -88,7 +88,7 @@ fn draw(surface: &mut Surface<'_>, mark: &Mark, fonts: &Fonts) {
                 })
                 .collect();
             let start = PdfPoint::from_xy(style.start(at.0, text), at.1);
-            let font = fonts.of(style.face);
+            let font = fonts.font(style.face);
             surface.draw_glyphs(start, &glyphs, font, text, style.size, false);
         }
         Mark::Line { points, pen } => {

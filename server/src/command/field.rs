@@ -7,7 +7,7 @@ use serde::Serialize;
 use std::process::ExitCode;
 
 #[derive(Serialize)]
-struct Answer {
+struct FieldOutput {
     declination_deg: f64,
     h_nt: f64,
     z_nt: f64,
@@ -25,7 +25,7 @@ pub fn field(arguments: &Field) -> anyhow::Result<ExitCode> {
     print_result(find(arguments).map(|found| json(&found)))
 }
 
-fn find(arguments: &Field) -> Result<Answer, BadInput> {
+fn find(arguments: &Field) -> Result<FieldOutput, BadInput> {
     let position = input::position(arguments.lat, arguments.lon)?;
     let time = input::date(&arguments.date)?;
     let model = match arguments.model {
@@ -39,7 +39,7 @@ fn find(arguments: &Field) -> Result<Answer, BadInput> {
         };
         BadInput::option(option, error)
     })?;
-    Ok(Answer {
+    Ok(FieldOutput {
         declination_deg: field.declination().degrees_east(),
         h_nt: field.h_nt(),
         z_nt: field.z_nt,

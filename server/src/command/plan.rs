@@ -35,18 +35,22 @@ pub fn plan(arguments: &Plan) -> anyhow::Result<ExitCode> {
 
 fn find(arguments: &Plan) -> Result<String, BadInput> {
     let model: Model = input::json_file(&arguments.model)?;
-    model.check().map_err(|error| of(&arguments.model, error))?;
+    model
+        .check()
+        .map_err(|error| file_error(&arguments.model, error))?;
     let binnacle: Binnacle = input::json_file(&arguments.binnacle)?;
     let form: BerthForm = input::json_file(&arguments.berth)?;
     if let Some(mistake) = form.explain_misreadings(&model, &binnacle) {
-        return Err(of(&arguments.berth, mistake));
+        return Err(file_error(&arguments.berth, mistake));
     }
-    let berth = form.parse().map_err(|error| of(&arguments.berth, error))?;
+    let berth = form
+        .parse()
+        .map_err(|error| file_error(&arguments.berth, error))?;
     let outcome = find_plans(&berth.adjustment(&model, &binnacle));
     let outcome = outcome.map_err(|error| match error {
-        AdjustError::Binnacle(error) => of(&arguments.binnacle, error),
-        AdjustError::Deviation(error) => of(&arguments.model, error),
-        error => of(&arguments.berth, error),
+        AdjustError::Binnacle(error) => file_error(&arguments.binnacle, error),
+        AdjustError::Deviation(error) => file_error(&arguments.model, error),
+        error => file_error(&arguments.berth, error),
     })?;
     if let Some(after) = &arguments.after {
         return read_after(
@@ -73,7 +77,7 @@ fn read_after(
     mut outcome: Outcome,
 ) -> Result<String, BadInput> {
     if let Some(refused) = outcome.refusals.first() {
-        return Err(of(
+        return Err(file_error(
             &arguments.berth,
             format!("no plan is possible: {}", refused.words),
         ));
@@ -81,14 +85,22 @@ fn read_after(
     let after: PostCheckForm = input::json_file(file)?;
     let plans = outcome.plans.len();
     if after.plan == 0 || after.plan > plans {
-        return Err(of(file, format!("plan: there are plans 1 to {plans}")));
+        return Err(file_error(
+            file,
+            format!("plan: there are plans 1 to {plans}"),
+        ));
     }
     let plan = outcome.plans.remove(after.plan - 1);
     if after.turned_deg.len() > plan.steps.len() {
         let steps = plan.steps.len();
-        return Err(of(file, format!("turned_deg: the plan has {steps} steps")));
+        return Err(file_error(
+            file,
+            format!("turned_deg: the plan has {steps} steps"),
+        ));
     }
-    let there = form.parse_after(&after).map_err(|error| of(file, error))?;
+    let there = form
+        .parse_after(&after)
+        .map_err(|error| file_error(file, error))?;
     let steps = plan.steps.into_iter().enumerate();
     let done: Vec<CompletedStep> = steps
         .map(|(index, step)| CompletedStep {
@@ -108,9 +120,9 @@ fn read_after(
         after.reading.compass_deg,
         after.reading.unit,
     );
-    Ok(json(&checked.map_err(|error| of(file, error))?))
+    Ok(json(&checked.map_err(|error| file_error(file, error))?))
 }
 
-fn of(file: &Path, what: impl std::fmt::Display) -> BadInput {
+fn file_error(file: &Path, what: impl std::fmt::Display) -> BadInput {
     BadInput(format!("{}: {what}", file.display()))
 }

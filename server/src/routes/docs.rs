@@ -84,7 +84,7 @@ fn operation_section(page: &mut String, path: &str, method: &str, operation: &Va
             .map(|(_, content)| kind(&content["schema"]));
         let _ = write!(
             page,
-            "<tr><td>{}<td>answer<td>{}<td>{}",
+            "<tr><td>{}<td>response<td>{}<td>{}",
             escape(status),
             schema.unwrap_or_default(),
             text(&response["description"])

@@ -120,7 +120,7 @@ fn describe(status: &str, response: &mut Response) {
     if response.description.is_empty() {
         status
             .canonical_reason()
-            .unwrap_or("Answer")
+            .unwrap_or("Response")
             .clone_into(&mut response.description);
     }
     if status.is_client_error() {

@@ -21,7 +21,7 @@ pub async fn set_alert_limits(server: &TestServer, person: &Person, ship: &Ship,
     let mut settings = person.get(&ship.path("/settings")).await.good();
     settings["alerts"] = limits;
     let request = person.request(Method::PUT, &ship.path("/settings"));
-    ApiResponse::of(request.json(&settings)).await.good();
+    ApiResponse::send(request.json(&settings)).await.good();
     server.advance(A_WHILE_S);
     server.work().await;
 }

@@ -23,5 +23,5 @@ pub fn binnacle() -> Value {
 
 /// Writes a binnacle.
 pub async fn put(person: &Person, path: &str, body: &Value) -> ApiResponse {
-    ApiResponse::of(person.request(Method::PUT, path).json(body)).await
+    ApiResponse::send(person.request(Method::PUT, path).json(body)).await
 }

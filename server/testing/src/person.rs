@@ -37,7 +37,7 @@ pub struct ApiResponse {
 
 impl ApiResponse {
     /// Sends a request and reads its response.
-    pub async fn of(request: reqwest::RequestBuilder) -> ApiResponse {
+    pub async fn send(request: reqwest::RequestBuilder) -> ApiResponse {
         let response = request.send().await.unwrap();
         ApiResponse {
             status: response.status().as_u16(),
@@ -159,12 +159,12 @@ impl Person {
 
     /// Sends a GET request.
     pub async fn get(&self, path: &str) -> ApiResponse {
-        ApiResponse::of(self.request(Method::GET, path)).await
+        ApiResponse::send(self.request(Method::GET, path)).await
     }
 
     /// Sends a POST request.
     pub async fn post(&self, path: &str, body: &Value) -> ApiResponse {
-        ApiResponse::of(self.request(Method::POST, path).json(body)).await
+        ApiResponse::send(self.request(Method::POST, path).json(body)).await
     }
 
     /// Creates a vessel with one compass.
@@ -179,7 +179,7 @@ pub async fn try_sign_in(server: &TestServer, email: &str, password: &str) -> Ap
         .http
         .post(format!("{}/api/v1/session", server.url))
         .json(&json!({ "email": email, "password": password }));
-    ApiResponse::of(request).await
+    ApiResponse::send(request).await
 }
 
 async fn create_operator(server: &TestServer, name: &str) -> OperatorId {
@@ -194,5 +194,5 @@ async fn create_operator(server: &TestServer, name: &str) -> OperatorId {
 
 /// Sends a PATCH request.
 pub async fn patch(person: &Person, path: &str, body: &Value) -> ApiResponse {
-    ApiResponse::of(person.request(Method::PATCH, path).json(body)).await
+    ApiResponse::send(person.request(Method::PATCH, path).json(body)).await
 }

@@ -66,13 +66,13 @@ impl Ship {
     /// Sends bytes as a batch.
     pub async fn put_bytes(&self, seq: u64, bytes: Vec<u8>) -> ApiResponse {
         let path = format!("/streams/{}/batches/{seq}", self.stream);
-        ApiResponse::of(self.request(reqwest::Method::PUT, &path).body(bytes)).await
+        ApiResponse::send(self.request(reqwest::Method::PUT, &path).body(bytes)).await
     }
 
     /// Reads the downlink in its JSON form; `has` is the query.
     pub async fn downlink(&self, has: &str) -> Value {
         let path = format!("/streams/{}/downlink{has}", self.stream);
-        ApiResponse::of(self.request(reqwest::Method::GET, &path))
+        ApiResponse::send(self.request(reqwest::Method::GET, &path))
             .await
             .good()
     }
@@ -110,7 +110,7 @@ impl Ship {
     /// Sends a logbook report as the agent.
     pub async fn put_report(&self, id: &str, report: &Value) -> ApiResponse {
         let path = format!("/agents/logbook/{id}");
-        ApiResponse::of(self.request(reqwest::Method::PUT, &path).json(report)).await
+        ApiResponse::send(self.request(reqwest::Method::PUT, &path).json(report)).await
     }
 }
 
@@ -120,7 +120,7 @@ pub async fn enrol_with_code(server: &TestServer, code: &str) -> ApiResponse {
         .http
         .post(format!("{}/api/v1/agents/enrol", server.url))
         .json(&json!({ "code": code, "agent_version": "1.2.3" }));
-    ApiResponse::of(request).await
+    ApiResponse::send(request).await
 }
 
 /// Returns the bytes of a batch.

@@ -229,7 +229,7 @@ impl Job {
     /// Uploads a photograph.
     pub async fn post_photo(&self, bytes: &'static [u8]) -> ApiResponse {
         let path = self.path("/photos?caption=trays");
-        ApiResponse::of(self.person.request(Method::POST, &path).body(bytes)).await
+        ApiResponse::send(self.person.request(Method::POST, &path).body(bytes)).await
     }
 
     /// Logs magnetic cargo, and returns the path that withdraws the entry.

@@ -136,7 +136,7 @@ async fn a_worse_alert_needs_another_acknowledgement(server: TestServer) {
     assert_eq!(alert["severity"], "warning");
     // Without a body, because the note is optional.
     let request = ada.request(Method::POST, &path(&alert, "/acknowledge"));
-    let known = ApiResponse::of(request).await.good();
+    let known = ApiResponse::send(request).await.good();
     assert_eq!(known["acknowledgement_note"], Value::Null);
     set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let worse = ada.get(&path(&alert, "")).await.good();

@@ -96,7 +96,7 @@ async fn a_binnacle_repeated_under_its_key_is_one_revision(server: TestServer) {
         let request = ada
             .request(Method::PUT, &path)
             .header("idempotency-key", key);
-        ApiResponse::of(request.json(&body))
+        ApiResponse::send(request.json(&body))
     };
     assert_eq!(send(binnacle(), "a").await.good()["revision"], 1);
     assert_eq!(send(other, "b").await.good()["revision"], 2);
@@ -173,7 +173,7 @@ async fn the_fleet_lists_each_compass_with_or_without_its_binnacle(server: TestS
     put(&ada, &paths[2].1, &binnacle()).await.good();
     let sold = json!({ "in_service": false });
     let sold = ada.request(Method::PATCH, &paths[2].0).json(&sold);
-    ApiResponse::of(sold).await.good();
+    ApiResponse::send(sold).await.good();
 
     let first = ada.get("/binnacles?limit=1").await.good();
     let nao = &first["items"][0];

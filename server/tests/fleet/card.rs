@@ -44,7 +44,7 @@ async fn modelled_ship(server: &TestServer, ada: &Person) -> Ship {
 }
 
 async fn amend(ada: &Person, path: &str, body: Value) {
-    ApiResponse::of(ada.request(Method::PATCH, path).json(&body))
+    ApiResponse::send(ada.request(Method::PATCH, path).json(&body))
         .await
         .good();
 }

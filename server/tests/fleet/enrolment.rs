@@ -91,23 +91,23 @@ async fn an_agent_reaches_only_its_own_streams(server: TestServer) {
     let kogge = server.ship(&ada, "Kogge").await;
     let stolen = binnacle_server_testing::frame(kogge.stream, 1, &[]);
     let path = format!("/streams/{}/batches/1", kogge.stream);
-    let put = ApiResponse::of(nao.request(Method::PUT, &path).body(stolen)).await;
+    let put = ApiResponse::send(nao.request(Method::PUT, &path).body(stolen)).await;
     assert_eq!(put.problem(), "not-found");
     let path = format!("/streams/{}/downlink", kogge.stream);
-    let fleet_read = ApiResponse::of(nao.request(Method::GET, &path)).await;
+    let fleet_read = ApiResponse::send(nao.request(Method::GET, &path)).await;
     assert_eq!(fleet_read.problem(), "not-found");
     // It does not open the fleet API either.
-    let vessels = ApiResponse::of(nao.request(Method::GET, "/vessels")).await;
+    let vessels = ApiResponse::send(nao.request(Method::GET, "/vessels")).await;
     assert_eq!(vessels.problem(), "unauthenticated");
 
-    let opened = ApiResponse::of(nao.request(Method::POST, "/streams")).await;
+    let opened = ApiResponse::send(nao.request(Method::POST, "/streams")).await;
     assert_eq!(opened.status, 201);
     let stream = opened.json()["stream"].as_str().unwrap().to_owned();
     let second = binnacle_wire::batch::StreamId(stream.parse().unwrap());
     let now = server.app.clock.now();
     let batch = binnacle_server_testing::frame(second, 1, &[sample(now, 90.0)]);
     let path = format!("/streams/{stream}/batches/1");
-    let put = ApiResponse::of(nao.request(Method::PUT, &path).body(batch)).await;
+    let put = ApiResponse::send(nao.request(Method::PUT, &path).body(batch)).await;
     assert_eq!(put.good()["contiguous_seq"], 1);
     server.finish().await;
 }
@@ -146,7 +146,7 @@ async fn the_agents_list_reports_the_spool_and_a_short_budget(server: TestServer
         let batch = binnacle_server_testing::frame(nao.stream, seq, &taken);
         let path = format!("/streams/{}/batches/{seq}{status_query}", nao.stream);
         let put = nao.request(Method::PUT, &path).body(batch);
-        ApiResponse::of(put).await.good();
+        ApiResponse::send(put).await.good();
     };
     send(1, "").await;
     assert_eq!(status_on_board().await, Value::Null, "it was not said");
@@ -165,22 +165,22 @@ async fn a_token_is_replaced_only_by_one_made_for_the_agent(server: TestServer) 
     let ada = server.admin("ada").await;
     let mut nao = server.ship(&ada, "Nao").await;
     let other = server.ship(&ada, "Arrano").await;
-    let made = ApiResponse::of(nao.request(Method::POST, "/agents/token")).await;
+    let made = ApiResponse::send(nao.request(Method::POST, "/agents/token")).await;
     let new = made.good()["token"].as_str().unwrap().to_owned();
     let old = std::mem::replace(&mut nao.token, new.clone());
     let path = format!("/streams/{}/downlink", nao.stream);
-    let early = ApiResponse::of(nao.request(Method::GET, &path)).await;
+    let early = ApiResponse::send(nao.request(Method::GET, &path)).await;
     assert_eq!(early.status, 401, "it is not in place yet");
     nao.token = old;
     for wrong in [&other.token, "short", ""] {
         let request = nao.request(Method::PUT, "/agents/token");
-        let refused = ApiResponse::of(request.json(&json!({ "token": wrong }))).await;
+        let refused = ApiResponse::send(request.json(&json!({ "token": wrong }))).await;
         assert_eq!(refused.status, 422, "{wrong}");
     }
     let request = nao.request(Method::PUT, "/agents/token");
-    let replaced = ApiResponse::of(request.json(&json!({ "token": new }))).await;
+    let replaced = ApiResponse::send(request.json(&json!({ "token": new }))).await;
     assert_eq!(replaced.status, 204);
-    let late = ApiResponse::of(nao.request(Method::GET, &path)).await;
+    let late = ApiResponse::send(nao.request(Method::GET, &path)).await;
     assert_eq!(late.status, 401, "the old one is not known any more");
     nao.token = new;
     assert_eq!(nao.downlink("").await["contiguous_seq"], 0);
@@ -191,7 +191,7 @@ async fn revoke(person: &Person, ship: &Ship) -> ApiResponse {
     let streams = person.get(&ship.path("/agents")).await.good();
     let agent = streams["items"][0]["agent_id"].as_str().unwrap();
     let path = ship.path(&format!("/agents/{agent}"));
-    ApiResponse::of(person.request(Method::DELETE, &path)).await
+    ApiResponse::send(person.request(Method::DELETE, &path)).await
 }
 
 async fn a_revoked_agent_loses_access_and_its_batches_stay(server: TestServer) {
@@ -213,7 +213,7 @@ async fn a_revoked_agent_loses_access_and_its_batches_stay(server: TestServer) {
 
 /// Opens another stream of the same agent.
 async fn another_stream(ship: &Ship) -> StreamId {
-    let opened = ApiResponse::of(ship.request(Method::POST, "/streams")).await;
+    let opened = ApiResponse::send(ship.request(Method::POST, "/streams")).await;
     StreamId(opened.json()["stream"].as_str().unwrap().parse().unwrap())
 }
 
@@ -221,7 +221,7 @@ async fn put_batch(ship: &Ship, stream: StreamId, seq: u64) {
     let path = format!("/streams/{stream}/batches/{seq}");
     let frame = binnacle_server_testing::frame(stream, seq, &[]);
     let put = ship.request(Method::PUT, &path).body(frame);
-    ApiResponse::of(put).await.good();
+    ApiResponse::send(put).await.good();
 }
 
 async fn duplicate_agent_alerts(person: &Person) -> Vec<Value> {

@@ -32,7 +32,7 @@ async fn a_waiting_response_contains_the_new_model(server: TestServer) {
     let samples = days_at_sea(&true_model(), "2026-11-10T00:00:00Z", 6.0);
     let path = format!("/streams/{}/batches/1?wait=50", nao.stream);
     let request = nao.request(reqwest::Method::PUT, &path);
-    let sending = ApiResponse::of(request.body(frame(nao.stream, 1, &samples)));
+    let sending = ApiResponse::send(request.body(frame(nao.stream, 1, &samples)));
     let working = async {
         while server.work().await.is_empty() {
             tokio::task::yield_now().await;
@@ -50,7 +50,7 @@ async fn waiting_without_a_worker_times_out(server: TestServer) {
     let nao = server.ship(&ada, "Nao").await;
     let path = format!("/streams/{}/batches/1?wait=0", nao.stream);
     let request = nao.request(reqwest::Method::PUT, &path);
-    let sending = ApiResponse::of(request.body(frame(nao.stream, 1, &passage(DAY, 6))));
+    let sending = ApiResponse::send(request.body(frame(nao.stream, 1, &passage(DAY, 6))));
     let response = sending.await.good();
     assert_eq!(response["contiguous_seq"], 1);
     assert!(response.get("model").is_none());

@@ -40,7 +40,7 @@ async fn a_repeated_create_request_creates_nothing(server: TestServer) {
     let ada = server.admin("ada").await;
     let create = async |body: Value| {
         let request = ada.request(Method::POST, "/vessels");
-        ApiResponse::of(request.header("idempotency-key", "k-1").json(&body)).await
+        ApiResponse::send(request.header("idempotency-key", "k-1").json(&body)).await
     };
     let first = create(json!({ "name": "Nao" })).await;
     let repeated = create(json!({ "name": "Nao" })).await;
@@ -55,7 +55,7 @@ async fn a_repeated_create_request_creates_nothing(server: TestServer) {
     let request = eve
         .request(Method::POST, "/vessels")
         .header("idempotency-key", "k-1");
-    let theirs = ApiResponse::of(request.json(&json!({ "name": "Nao" }))).await;
+    let theirs = ApiResponse::send(request.json(&json!({ "name": "Nao" }))).await;
     assert_ne!(theirs.good()["id"], first.json()["id"]);
     server.finish().await;
 }
@@ -108,7 +108,7 @@ async fn vessel_and_compass_details_can_be_amended(server: TestServer) {
     let vessel = ada.post("/vessels", &body).await.good();
     let path = format!("/vessels/{}", vessel["id"].as_str().unwrap());
     let amend = async |path: &str, body: Value| {
-        ApiResponse::of(ada.request(Method::PATCH, path).json(&body)).await
+        ApiResponse::send(ada.request(Method::PATCH, path).json(&body)).await
     };
     let change = json!({ "call_sign": " EAVN ", "flag": null });
     let amended = amend(&path, change).await.good();
@@ -159,7 +159,8 @@ async fn vessel_and_compass_details_can_be_amended(server: TestServer) {
 
     let viewer = ada.viewer(&server).await;
     for path in [&path, &compass] {
-        let response = ApiResponse::of(viewer.request(Method::PATCH, path).json(&json!({}))).await;
+        let response =
+            ApiResponse::send(viewer.request(Method::PATCH, path).json(&json!({}))).await;
         assert_eq!(response.problem(), "forbidden");
     }
     server.finish().await;

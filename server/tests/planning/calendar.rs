@@ -77,7 +77,7 @@ async fn create_feed(person: &Person, new: &Value) -> Value {
 async fn read_feed(server: &TestServer, made: &Value) -> ApiResponse {
     let url = made["url"].as_str().unwrap();
     let path = url.strip_prefix("https://binnacle.example").unwrap();
-    ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await
+    ApiResponse::send(server.http.get(format!("{}{path}", server.url))).await
 }
 
 async fn a_calendar_is_readable_by_its_secret_address_until_removed(server: TestServer) {
@@ -102,7 +102,7 @@ async fn a_calendar_is_readable_by_its_secret_address_until_removed(server: Test
         property(&calendar, "UID")
     );
     let url = format!("{}/api/v1/calendar.ics?token=bnc_wrong", server.url);
-    let wrong = ApiResponse::of(server.http.get(url)).await;
+    let wrong = ApiResponse::send(server.http.get(url)).await;
     assert_eq!(wrong.problem(), "unauthenticated");
 
     let listed = parties.ada.get("/calendar-feeds").await.good();
@@ -110,9 +110,9 @@ async fn a_calendar_is_readable_by_its_secret_address_until_removed(server: Test
     let path = format!("/calendar-feeds/{}", made["id"].as_str().unwrap());
     let eve = server.admin("eve").await;
     assert_eq!(eve.get("/calendar-feeds").await.good()["items"], json!([]));
-    let theirs = ApiResponse::of(eve.request(Method::DELETE, &path)).await;
+    let theirs = ApiResponse::send(eve.request(Method::DELETE, &path)).await;
     assert_eq!(theirs.problem(), "not-found");
-    let removed = ApiResponse::of(parties.ada.request(Method::DELETE, &path)).await;
+    let removed = ApiResponse::send(parties.ada.request(Method::DELETE, &path)).await;
     assert_eq!(removed.status, 204);
     assert_eq!(read_feed(&server, &made).await.problem(), "unauthenticated");
     server.finish().await;

@@ -20,7 +20,7 @@ const LATER: &str = "2026-11-15T12:00:00Z";
 
 async fn set_in_service(person: &Person, vessel: &str, in_service: bool) -> ApiResponse {
     let request = person.request(Method::PATCH, vessel);
-    ApiResponse::of(request.json(&json!({ "in_service": in_service }))).await
+    ApiResponse::send(request.json(&json!({ "in_service": in_service }))).await
 }
 
 async fn items(person: &Person, path: &str) -> Vec<Value> {

@@ -49,7 +49,7 @@ async fn each_change_has_an_audit_line(server: TestServer) {
     let named = ada
         .request(Method::PATCH, &path)
         .json(&json!({ "name": "Nao Victoria" }));
-    ApiResponse::of(named).await.good();
+    ApiResponse::send(named).await.good();
     ada.get(&path).await.good();
     let found = lines(&ada, "").await;
     assert_eq!(
@@ -83,11 +83,11 @@ async fn a_refused_change_has_an_audit_line_too(server: TestServer) {
     let path = format!("/vessels/{}", vessel["id"].as_str().unwrap());
     let change = json!({ "name": "Mine" });
     for (who, expected) in [(&viewer, 403), (&eve, 404)] {
-        let refused = ApiResponse::of(who.request(Method::PATCH, &path).json(&change)).await;
+        let refused = ApiResponse::send(who.request(Method::PATCH, &path).json(&change)).await;
         assert_eq!(refused.status, expected);
     }
     let nobody = server.http.patch(format!("{}/api/v1{path}", server.url));
-    assert_eq!(ApiResponse::of(nobody.json(&change)).await.status, 401);
+    assert_eq!(ApiResponse::send(nobody.json(&change)).await.status, 401);
     let wrong = try_sign_in(&server, "ada@example.com", "wrong").await;
     assert_eq!(wrong.status, 401);
     let adas = requests(&lines(&ada, "?route=/api/v1/vessels/{id}").await);
@@ -192,7 +192,7 @@ async fn each_party_sees_its_own_audit_lines_and_a_viewer_none(server: TestServe
     let root = ada.platform_admin(&server).await;
     ada.create_vessel("Nao").await;
     let engage = format!("/operators/{}/firms/{firm}", eve.operator);
-    let engaged = ApiResponse::of(root.request(Method::PUT, &engage)).await;
+    let engaged = ApiResponse::send(root.request(Method::PUT, &engage)).await;
     assert_eq!(engaged.status, 204);
     for path in ["/audit", "/audit.csv"] {
         assert_eq!(viewer.get(path).await.problem(), "forbidden");
@@ -246,7 +246,7 @@ async fn an_accepted_invitation_has_an_audit_line(server: TestServer) {
     let code = &bob["invitation"]["code"];
     let taken = json!({ "code": code, "password": "a lantern astern at midnight" });
     let accept = format!("{}/api/v1/invitations/accept", server.url);
-    ApiResponse::of(server.http.post(accept).json(&taken))
+    ApiResponse::send(server.http.post(accept).json(&taken))
         .await
         .good();
     let found = lines(&ada, "?route=/api/v1/invitations/accept").await;
@@ -265,17 +265,17 @@ async fn the_audit_log_contains_no_secret(server: TestServer) {
     let token = made["token"].as_str().unwrap();
     let vessels = format!("{}/api/v1/vessels", server.url);
     let request = server.http.post(vessels).bearer_auth(token);
-    ApiResponse::of(request.json(&json!({ "name": "Nao" })))
+    ApiResponse::send(request.json(&json!({ "name": "Nao" })))
         .await
         .good();
     let hook = json!({ "url": "https://example.com/?key=hidden", "kinds": ["alert.raised"] });
     let hook = ada.post("/webhooks", &hook).await.good();
     // A secret in the place of an id.
-    let slip = ApiResponse::of(ada.request(Method::DELETE, &format!("/tokens/{token}"))).await;
+    let slip = ApiResponse::send(ada.request(Method::DELETE, &format!("/tokens/{token}"))).await;
     assert_eq!(slip.status, 404);
     let changed = json!({ "current": PASSWORD, "new": "a lantern astern at midnight" });
     let changed = ada.request(Method::PUT, "/me/password").json(&changed);
-    assert_eq!(ApiResponse::of(changed).await.status, 204);
+    assert_eq!(ApiResponse::send(changed).await.status, 204);
     let file = ada.get("/audit.csv").await.text;
     assert!(file.contains("/api/v1/tokens/*"), "{file}");
     let by_token = lines(&ada, "?route=/api/v1/vessels").await;

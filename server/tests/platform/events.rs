@@ -57,10 +57,10 @@ impl EventSource {
         if let Some(last) = last {
             request = request.header("last-event-id", last);
         }
-        EventSource::of(request).await
+        EventSource::send(request).await
     }
 
-    async fn of(request: reqwest::RequestBuilder) -> EventSource {
+    async fn send(request: reqwest::RequestBuilder) -> EventSource {
         let response = request.send().await.unwrap();
         assert_eq!(response.headers()["content-type"], "text/event-stream");
         let chunks = futures_util::stream::unfold(response, |mut response| async {
@@ -164,7 +164,8 @@ async fn a_revoked_token_and_an_ended_session_get_no_more_events(server: TestSer
     let made = ada.post("/tokens", &token).await.good();
     let url = format!("{}/api/v1/events", server.url);
     let request = server.http.get(url);
-    let mut by_token = EventSource::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
+    let mut by_token =
+        EventSource::send(request.bearer_auth(made["token"].as_str().unwrap())).await;
     let mut by_session = EventSource::open(&grace, None).await;
     let mut kept = EventSource::open(&ada, None).await;
     nao.put(1, &passage(DAY, 3)).await.good();
@@ -176,7 +177,7 @@ async fn a_revoked_token_and_an_ended_session_get_no_more_events(server: TestSer
         ada.request(Method::DELETE, &path),
         grace.request(Method::DELETE, "/session"),
     ] {
-        assert_eq!(ApiResponse::of(ended).await.status, 204);
+        assert_eq!(ApiResponse::send(ended).await.status, 204);
     }
     nao.put(2, &passage("2026-11-16T00:00:00Z", 3)).await.good();
     assert!(kept.next().await.is_some());

@@ -9,7 +9,7 @@ use serde_json::json;
 async fn every_response_to_people_has_browser_security_headers() {
     let server = TestServer::start(Engine::Sqlite).await;
     for path in ["/", "/api/docs", "/api/v1/vessels", "/api/none", "/healthz"] {
-        let response = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
+        let response = ApiResponse::send(server.http.get(format!("{}{path}", server.url))).await;
         let header = |name: &str| response.headers[name].to_str().unwrap().to_owned();
         assert_eq!(header("x-content-type-options"), "nosniff", "{path}");
         assert_eq!(header("x-frame-options"), "DENY");
@@ -38,7 +38,7 @@ async fn every_response_to_people_has_browser_security_headers() {
 async fn a_plain_http_server_sends_no_strict_transport_security() {
     let plain = ["--public-url", "http://binnacle.example"];
     let server = TestServer::start_with(Engine::Sqlite, &plain).await;
-    let response = ApiResponse::of(server.http.get(format!("{}/", server.url))).await;
+    let response = ApiResponse::send(server.http.get(format!("{}/", server.url))).await;
     assert_eq!(response.headers.get("strict-transport-security"), None);
     server.finish().await;
 }
@@ -56,11 +56,11 @@ async fn a_cross_site_request_changes_nothing_and_cannot_sign_in() {
     ] {
         // Even with the cookie and the dashboard's own header.
         let request = ada.request(Method::POST, "/vessels").json(&vessel);
-        let refused = ApiResponse::of(request.header(name, value)).await;
+        let refused = ApiResponse::send(request.header(name, value)).await;
         assert_eq!(refused.problem(), "forbidden", "{name}: {value}");
         let who = json!({ "email": "ada@example.com", "password": PASSWORD });
         let sign_in = server.http.post(format!("{}/api/v1/session", server.url));
-        let refused = ApiResponse::of(sign_in.json(&who).header(name, value)).await;
+        let refused = ApiResponse::send(sign_in.json(&who).header(name, value)).await;
         assert_eq!(refused.problem(), "forbidden", "{name}: {value}");
         assert_eq!(refused.headers.get("set-cookie"), None);
     }
@@ -71,7 +71,7 @@ async fn a_cross_site_request_changes_nothing_and_cannot_sign_in() {
         ("sec-fetch-site", "same-origin"),
     ] {
         let request = ada.request(Method::POST, "/vessels").json(&vessel);
-        let made = ApiResponse::of(request.header(name, value)).await;
+        let made = ApiResponse::send(request.header(name, value)).await;
         assert_eq!(made.status, 201, "{name}: {value}: {made:?}");
     }
     server.finish().await;
@@ -114,7 +114,7 @@ async fn an_oversized_body_is_refused_with_a_problem_on_every_json_route() {
                 _ => ada.request(method, &filled),
             };
             let request = request.header("content-type", "application/json");
-            let refused = ApiResponse::of(request.body(body.clone())).await;
+            let refused = ApiResponse::send(request.body(body.clone())).await;
             assert_eq!(refused.problem(), "too-large", "{path}: {refused:?}");
             assert_eq!(refused.status, 413);
             tried += 1;
@@ -138,7 +138,7 @@ async fn endless_headers_are_refused_while_others_are_served() {
     for index in 0..200 {
         many = many.header(format!("x-{index}"), "y");
     }
-    assert_eq!(ApiResponse::of(many).await.status, 431);
-    assert_eq!(ApiResponse::of(server.http.get(&page)).await.status, 200);
+    assert_eq!(ApiResponse::send(many).await.status, 431);
+    assert_eq!(ApiResponse::send(server.http.get(&page)).await.status, 200);
     server.finish().await;
 }

@@ -33,17 +33,17 @@ async fn invite(admin: &Person, email: &str, role: &str) -> Value {
 async fn accept(server: &TestServer, code: &str, password: &str) -> ApiResponse {
     let url = format!("{}/api/v1/invitations/accept", server.url);
     let body = json!({ "code": code, "password": password });
-    ApiResponse::of(server.http.post(url).json(&body)).await
+    ApiResponse::send(server.http.post(url).json(&body)).await
 }
 
 async fn change(admin: &Person, id: &Value, body: Value) -> ApiResponse {
     let path = format!("/users/{}", id.as_str().unwrap());
-    ApiResponse::of(admin.request(Method::PATCH, &path).json(&body)).await
+    ApiResponse::send(admin.request(Method::PATCH, &path).json(&body)).await
 }
 
 async fn remove(admin: &Person, id: &Value) -> ApiResponse {
     let path = format!("/users/{}", id.as_str().unwrap());
-    ApiResponse::of(admin.request(Method::DELETE, &path)).await
+    ApiResponse::send(admin.request(Method::DELETE, &path)).await
 }
 
 async fn an_invited_person_sets_a_password_and_signs_in(server: TestServer) {
@@ -137,7 +137,7 @@ async fn blocking_a_person_ends_access_at_once(server: TestServer) {
     let token = viewer.post("/tokens", &token).await.good()["token"].clone();
     let by_token = || {
         let request = server.http.get(format!("{}/api/v1/vessels", server.url));
-        ApiResponse::of(request.bearer_auth(token.as_str().unwrap()))
+        ApiResponse::send(request.bearer_auth(token.as_str().unwrap()))
     };
     assert_eq!(by_token().await.status, 200);
     let id = viewer.get("/me").await.good()["user_id"].clone();
@@ -195,7 +195,7 @@ async fn a_removed_persons_tokens_are_revoked(server: TestServer) {
     assert_eq!(remove(&ada, &id).await.problem(), "not-found");
     assert_eq!(viewer.get("/me").await.problem(), "unauthenticated");
     let request = server.http.get(format!("{}/api/v1/me", server.url));
-    let by_token = ApiResponse::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
+    let by_token = ApiResponse::send(request.bearer_auth(made["token"].as_str().unwrap())).await;
     assert_eq!(by_token.problem(), "unauthenticated");
     // The e-mail address is free again.
     invite(&ada, &viewer.email, "viewer").await;
@@ -275,7 +275,7 @@ struct Program {
 }
 
 impl Program {
-    async fn of(server: &TestServer, person: &Person) -> Program {
+    async fn with_token(server: &TestServer, person: &Person) -> Program {
         let new = json!({ "name": "ERP", "scope": "write" });
         let made = person.post("/tokens", &new).await.good();
         Program {
@@ -287,7 +287,7 @@ impl Program {
 
     async fn send(&self, method: Method, path: &str, body: &Value) -> ApiResponse {
         let request = self.http.request(method, format!("{}{path}", self.url));
-        ApiResponse::of(request.bearer_auth(&self.token).json(body)).await
+        ApiResponse::send(request.bearer_auth(&self.token).json(body)).await
     }
 }
 
@@ -297,7 +297,7 @@ async fn an_admins_token_cannot_manage_people(server: TestServer) {
     let other = viewer.get("/me").await.good()["user_id"].clone();
     let other = other.as_str().unwrap();
     let own = ada.get("/me").await.good()["user_id"].clone();
-    let program = Program::of(&server, &ada).await;
+    let program = Program::with_token(&server, &ada).await;
     let new = json!({ "email": "eve@example.com", "name": "Eve", "role": "admin" });
     let tried = [
         (Method::POST, "/users".to_owned(), new),
@@ -356,10 +356,10 @@ async fn a_new_code_ends_tokens_and_calendars(server: TestServer) {
     let grace = ada.viewer(&server).await;
     let id = grace.get("/me").await.good()["user_id"].clone();
     change(&ada, &id, json!({ "role": "admin" })).await.good();
-    let program = Program::of(&server, &grace).await;
+    let program = Program::with_token(&server, &grace).await;
     let address = calendar(&server, &grace).await;
     let http = server.http.clone();
-    let reads = || ApiResponse::of(http.get(&address));
+    let reads = || ApiResponse::send(http.get(&address));
     assert_eq!(reads().await.status, 200);
     let path = format!("/users/{}/invitation", id.as_str().unwrap());
     let code = ada.post(&path, &json!({})).await.good()["code"].clone();
@@ -387,7 +387,7 @@ async fn a_calendar_ends_with_its_creator(server: TestServer) {
         calendar(&server, &ada).await,
     );
     let http = server.http.clone();
-    let reads = |address: &str| ApiResponse::of(http.get(address));
+    let reads = |address: &str| ApiResponse::send(http.get(address));
     change(&ada, &id, json!({ "disabled": true })).await.good();
     assert_eq!(reads(&hers).await.problem(), "unauthenticated");
     change(&ada, &id, json!({ "disabled": false })).await.good();

@@ -64,7 +64,7 @@ pub(crate) async fn set_up(server: &TestServer, person: &Person) -> (String, Vec
 pub(crate) async fn sign_in(server: &TestServer, email: &str, code: &str) -> ApiResponse {
     let body = json!({ "email": email, "password": PASSWORD, "code": code });
     let url = format!("{}/api/v1/session", server.url);
-    ApiResponse::of(server.http.post(url).json(&body)).await
+    ApiResponse::send(server.http.post(url).json(&body)).await
 }
 
 async fn a_confirmed_factor_requires_a_code(server: TestServer) {
@@ -166,12 +166,12 @@ async fn a_factor_is_removed_with_the_password_or_by_an_admin(server: TestServer
     set_up(&server, &viewer).await;
     let id = viewer.get("/me").await.good()["user_id"].clone();
     let path = format!("/users/{}/second-factor", id.as_str().unwrap());
-    let theirs = ApiResponse::of(viewer.request(Method::DELETE, &path)).await;
+    let theirs = ApiResponse::send(viewer.request(Method::DELETE, &path)).await;
     assert_eq!(theirs.problem(), "forbidden");
     let eve = server.admin("eve").await;
-    let foreign = ApiResponse::of(eve.request(Method::DELETE, &path)).await;
+    let foreign = ApiResponse::send(eve.request(Method::DELETE, &path)).await;
     assert_eq!(foreign.problem(), "not-found");
-    let reset = ApiResponse::of(ada.request(Method::DELETE, &path)).await;
+    let reset = ApiResponse::send(ada.request(Method::DELETE, &path)).await;
     assert_eq!(reset.status, 204);
     assert_eq!(
         try_sign_in(&server, &viewer.email, PASSWORD).await.status,
@@ -187,7 +187,7 @@ async fn an_operator_may_require_a_factor_of_everyone(server: TestServer) {
     let token = viewer.post("/tokens", &token).await.good()["token"].clone();
     let rule = json!({ "second_factor_required": true });
     let put = |person: &Person| {
-        ApiResponse::of(person.request(Method::PUT, "/sign-in-rules").json(&rule))
+        ApiResponse::send(person.request(Method::PUT, "/sign-in-rules").json(&rule))
     };
     // Refused while the admin has no factor.
     assert_eq!(put(&ada).await.problem(), "wrong-state");
@@ -202,7 +202,7 @@ async fn an_operator_may_require_a_factor_of_everyone(server: TestServer) {
         assert_eq!(refused.status, 403);
     }
     let by_token = server.http.get(format!("{}/api/v1/vessels", server.url));
-    let by_token = ApiResponse::of(by_token.bearer_auth(token.as_str().unwrap())).await;
+    let by_token = ApiResponse::send(by_token.bearer_auth(token.as_str().unwrap())).await;
     assert_eq!(by_token.problem(), "second-factor-required");
     let more = json!({ "name": "x", "scope": "read" });
     let more = viewer.post("/tokens", &more).await;
@@ -221,7 +221,8 @@ async fn a_token_cannot_change_a_factor(server: TestServer) {
     for path in ["", "/remove", "/recovery-codes"] {
         let url = format!("{}/api/v1/me/second-factor{path}", server.url);
         let request = server.http.post(url).json(&password());
-        let response = ApiResponse::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
+        let response =
+            ApiResponse::send(request.bearer_auth(made["token"].as_str().unwrap())).await;
         assert_eq!(response.problem(), "forbidden", "{path}");
     }
     server.finish().await;

@@ -30,7 +30,7 @@ async fn a_session_lasts_until_the_user_signs_out(server: TestServer) {
     assert_eq!(me["email"], "ada@example.com");
     assert_eq!(me["role"], "admin");
     assert_eq!(me["operator_name"], "ada");
-    let gone = ApiResponse::of(ada.request(Method::DELETE, "/session")).await;
+    let gone = ApiResponse::send(ada.request(Method::DELETE, "/session")).await;
     assert_eq!(gone.status, 204);
     assert_eq!(ada.get("/me").await.problem(), "unauthenticated");
     server.finish().await;
@@ -73,13 +73,13 @@ async fn people_see_and_end_their_own_sessions(server: TestServer) {
     assert_eq!(items[1]["last_seen_at"], "2026-11-21T07:00:00Z");
     let end = |who: &Person, n: usize| {
         let path = format!("/sessions/{}", items[n]["id"].as_str().unwrap());
-        ApiResponse::of(who.request(Method::DELETE, &path))
+        ApiResponse::send(who.request(Method::DELETE, &path))
     };
     assert_eq!(end(&eve, 1).await.problem(), "not-found");
     assert_eq!(end(&ada, 1).await.status, 204);
     assert_eq!(telephone.get("/me").await.problem(), "unauthenticated");
     assert_eq!(office.get("/me").await.status, 200);
-    let others = ApiResponse::of(office.request(Method::DELETE, "/sessions")).await;
+    let others = ApiResponse::send(office.request(Method::DELETE, "/sessions")).await;
     assert_eq!(others.status, 204);
     assert_eq!(ada.get("/me").await.problem(), "unauthenticated");
     assert_eq!(office.get("/me").await.status, 200);
@@ -91,7 +91,7 @@ const NEW_PASSWORD: &str = "seven gulls over the quay";
 
 async fn put_password(person: &Person, current: &str, new: &str) -> ApiResponse {
     let body = json!({ "current": current, "new": new });
-    ApiResponse::of(person.request(Method::PUT, "/me/password").json(&body)).await
+    ApiResponse::send(person.request(Method::PUT, "/me/password").json(&body)).await
 }
 
 async fn a_new_password_ends_all_other_sessions(server: TestServer) {
@@ -131,7 +131,7 @@ async fn a_new_password_needs_the_current_one(server: TestServer) {
         .http
         .put(format!("{}/api/v1/me/password", server.url));
     let request = request.json(&json!({ "current": PASSWORD, "new": NEW_PASSWORD }));
-    let by_token = ApiResponse::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
+    let by_token = ApiResponse::send(request.bearer_auth(made["token"].as_str().unwrap())).await;
     assert_eq!(by_token.problem(), "forbidden");
     server.finish().await;
 }
@@ -158,7 +158,7 @@ async fn behind_trusted_proxies_the_clients_address_counts() {
     let body = json!({ "email": ada.email, "password": PASSWORD });
     let request = server.http.post(format!("{}/api/v1/session", server.url));
     let request = request.header("x-forwarded-for", "203.0.113.9, 198.51.100.7");
-    assert_eq!(ApiResponse::of(request.json(&body)).await.status, 200);
+    assert_eq!(ApiResponse::send(request.json(&body)).await.status, 200);
     let listed = ada.get("/sessions").await.good();
     assert_eq!(listed["items"][1]["address"], "198.51.100.7");
     server.finish().await;
@@ -178,7 +178,10 @@ async fn over_https_the_cookie_has_the_host_prefix() {
     );
     let planted = server.http.get(format!("{}/api/v1/me", server.url));
     let planted = planted.header("cookie", format!("binnacle_session={token}"));
-    assert_eq!(ApiResponse::of(planted).await.problem(), "unauthenticated");
+    assert_eq!(
+        ApiResponse::send(planted).await.problem(),
+        "unauthenticated"
+    );
     assert_eq!(ada.get("/me").await.status, 200);
     server.finish().await;
 }
@@ -201,7 +204,7 @@ async fn a_change_with_a_cookie_needs_the_dashboards_header(server: TestServer) 
         .post(format!("{}/api/v1/vessels", server.url))
         .header("cookie", &ada.cookie)
         .json(&json!({ "name": "Forged" }));
-    assert_eq!(ApiResponse::of(forged).await.problem(), "forbidden");
+    assert_eq!(ApiResponse::send(forged).await.problem(), "forbidden");
     assert_eq!(ada.get("/vessels").await.good()["items"], json!([]));
     server.finish().await;
 }
@@ -274,7 +277,7 @@ async fn an_invalid_sign_in_is_refused_with_a_problem(server: TestServer) {
         (json("").body(vec![b' '; 70_000]), "too-large"),
     ];
     for (request, problem) in cases {
-        assert_eq!(ApiResponse::of(request).await.problem(), problem);
+        assert_eq!(ApiResponse::send(request).await.problem(), problem);
     }
     server.finish().await;
 }
@@ -293,23 +296,23 @@ async fn a_token_has_its_scope_until_revoked(server: TestServer) {
                 .request(method, format!("{}/api/v1{path}", server.url))
                 .bearer_auth(secret)
         };
-        let listed = ApiResponse::of(ask(Method::GET, "/vessels")).await;
+        let listed = ApiResponse::send(ask(Method::GET, "/vessels")).await;
         assert_eq!(listed.status, 200);
         let created = ask(Method::POST, "/vessels").json(&json!({ "name": "Nao" }));
-        assert_eq!(ApiResponse::of(created).await.status, status, "{scope}");
+        assert_eq!(ApiResponse::send(created).await.status, status, "{scope}");
         // A leaked token cannot create tokens that outlive it.
         let more = ask(Method::POST, "/tokens").json(&json!({ "name": "x", "scope": "read" }));
-        assert_eq!(ApiResponse::of(more).await.status, 403);
+        assert_eq!(ApiResponse::send(more).await.status, 403);
 
         let path = format!("/tokens/{}", made["id"].as_str().unwrap());
-        let revoked = ApiResponse::of(ada.request(Method::DELETE, &path)).await;
+        let revoked = ApiResponse::send(ada.request(Method::DELETE, &path)).await;
         assert_eq!(revoked.status, 204);
         assert_eq!(
-            ApiResponse::of(ask(Method::GET, "/vessels")).await.status,
+            ApiResponse::send(ask(Method::GET, "/vessels")).await.status,
             401
         );
         assert_eq!(
-            ApiResponse::of(ada.request(Method::DELETE, &path))
+            ApiResponse::send(ada.request(Method::DELETE, &path))
                 .await
                 .status,
             404
@@ -324,7 +327,7 @@ async fn a_token_expires(server: TestServer) {
     let made = ada.post("/tokens", &new_token).await.good();
     let ask = || {
         let request = server.http.get(format!("{}/api/v1/me", server.url));
-        ApiResponse::of(request.bearer_auth(made["token"].as_str().unwrap()))
+        ApiResponse::send(request.bearer_auth(made["token"].as_str().unwrap()))
     };
     assert_eq!(ask().await.status, 200);
     let listed = ada.get("/tokens").await.good();

@@ -80,9 +80,9 @@ async fn every_vessel_route_is_not_found_for_another_operator(server: TestServer
         let path = path.replace("{call}", port_call.as_str().unwrap());
         let path = path.replace("{agent}", agent);
         let path = path.replace("{compass}", compass);
-        let theirs = ApiResponse::of(eve.request(method.clone(), &path).json(&body)).await;
+        let theirs = ApiResponse::send(eve.request(method.clone(), &path).json(&body)).await;
         assert_eq!(theirs.problem(), "not-found", "{method} {path}");
-        let ours = ApiResponse::of(ada.request(method.clone(), &path).json(&body)).await;
+        let ours = ApiResponse::send(ada.request(method.clone(), &path).json(&body)).await;
         // A file is not JSON.
         let file = path.contains("/port-calls.");
         let known = ours.status < 300
@@ -117,7 +117,7 @@ async fn every_route_needs_authentication(server: TestServer) {
         let url = format!("{}/api/v1{path}", server.url);
         for token in ["", "bna_wrong", "wrong", &"A".repeat(43)] {
             let request = server.http.request(method.clone(), &url).json(&body);
-            let response = ApiResponse::of(request.bearer_auth(token)).await;
+            let response = ApiResponse::send(request.bearer_auth(token)).await;
             assert_eq!(
                 response.problem(),
                 "unauthenticated",
@@ -125,7 +125,7 @@ async fn every_route_needs_authentication(server: TestServer) {
             );
         }
         let request = server.http.request(method.clone(), &url).json(&body);
-        let response = ApiResponse::of(request.header("cookie", "binnacle_session=x")).await;
+        let response = ApiResponse::send(request.header("cookie", "binnacle_session=x")).await;
         assert_eq!(response.problem(), "unauthenticated", "{method} {path}");
     }
     server.finish().await;
@@ -140,7 +140,7 @@ async fn another_operators_lists_are_empty(server: TestServer) {
     assert_eq!(eve.get("/vessels").await.good()["items"], json!([]));
     assert_eq!(eve.get("/tokens").await.good()["items"], json!([]));
     let path = format!("/tokens/{}", made["id"].as_str().unwrap());
-    let theirs = ApiResponse::of(eve.request(Method::DELETE, &path)).await;
+    let theirs = ApiResponse::send(eve.request(Method::DELETE, &path)).await;
     assert_eq!(theirs.problem(), "not-found");
     server.finish().await;
 }
@@ -160,7 +160,7 @@ async fn a_malformed_id_is_not_found(server: TestServer) {
 async fn an_unknown_method_of_a_path_is_refused_with_a_problem(server: TestServer) {
     let ada = server.admin("ada").await;
     for path in ["/vessels", "/agents/enrol", "/streams"] {
-        let response = ApiResponse::of(ada.request(Method::PATCH, path)).await;
+        let response = ApiResponse::send(ada.request(Method::PATCH, path)).await;
         assert_eq!(response.problem(), "method-not-allowed", "{path}");
     }
     server.finish().await;

@@ -7,7 +7,7 @@ use reqwest::header::HeaderName;
 async fn every_path_outside_the_api_serves_the_dashboard() {
     let server = TestServer::start(Engine::Sqlite).await;
     for path in ["/", "/vessels/1", "/index.html"] {
-        let page = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
+        let page = ApiResponse::send(server.http.get(format!("{}{path}", server.url))).await;
         assert_eq!(page.status, 200);
         assert!(
             page.headers["content-type"]
@@ -23,9 +23,9 @@ async fn every_path_outside_the_api_serves_the_dashboard() {
         assert_eq!(page.headers["x-content-type-options"], "nosniff");
     }
     let missing = server.http.get(format!("{}/assets/none.js", server.url));
-    assert_eq!(ApiResponse::of(missing).await.status, 404);
+    assert_eq!(ApiResponse::send(missing).await.status, 404);
     for path in ["/api/none", "/api/v1/none", "/api/v2/vessels"] {
-        let response = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
+        let response = ApiResponse::send(server.http.get(format!("{}{path}", server.url))).await;
         assert_eq!(response.problem(), "not-found", "{path}");
     }
     server.finish().await;
@@ -35,10 +35,10 @@ async fn every_path_outside_the_api_serves_the_dashboard() {
 async fn the_health_routes_report_the_servers_state() {
     let server = TestServer::start(Engine::Sqlite).await;
     for (path, text) in [("/healthz", "ok"), ("/readyz", "ready")] {
-        let response = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
+        let response = ApiResponse::send(server.http.get(format!("{}{path}", server.url))).await;
         assert_eq!((response.status, response.text.as_str()), (200, text));
     }
-    let metrics = ApiResponse::of(server.http.get(format!("{}/metrics", server.url))).await;
+    let metrics = ApiResponse::send(server.http.get(format!("{}/metrics", server.url))).await;
     assert!(
         metrics.text.contains("binnacle_http_requests_total"),
         "{metrics:?}"
@@ -50,7 +50,7 @@ async fn the_health_routes_report_the_servers_state() {
 async fn metrics_need_the_local_machine_or_a_token() {
     let read = async |server: &TestServer, header: (&str, &str)| {
         let request = server.http.get(format!("{}/metrics", server.url));
-        ApiResponse::of(request.header(header.0, header.1))
+        ApiResponse::send(request.header(header.0, header.1))
             .await
             .status
     };

@@ -83,13 +83,13 @@ async fn check_nothing_is_lost(engine: Engine) {
         let role = ["admin", "viewer", "platform_admin"][number];
         let url = format!("{}/api/v1/me", server.url);
         let cookie = format!("binnacle_session=session{number}");
-        let by_cookie = ApiResponse::of(server.http.get(&url).header("cookie", cookie)).await;
+        let by_cookie = ApiResponse::send(server.http.get(&url).header("cookie", cookie)).await;
         assert_eq!(by_cookie.good()["role"], role);
         let token = server
             .http
             .get(&url)
             .bearer_auth(format!("bna_token{number}"));
-        assert_eq!(ApiResponse::of(token).await.good()["role"], role);
+        assert_eq!(ApiResponse::send(token).await.good()["role"], role);
         let signed_in = try_sign_in(
             &server,
             &format!("{number}@example.com"),
@@ -105,7 +105,7 @@ async fn check_nothing_is_lost(engine: Engine) {
             .request(method, url(path))
             .bearer_auth("bna_token0")
     };
-    let webhooks = ApiResponse::of(request(Method::GET, "/webhooks"))
+    let webhooks = ApiResponse::send(request(Method::GET, "/webhooks"))
         .await
         .good();
     assert_eq!(webhooks["items"][0]["url"], "https://example.com/hook");
@@ -113,7 +113,7 @@ async fn check_nothing_is_lost(engine: Engine) {
     let vessel = request(Method::POST, "/vessels").json(&json!({ "name": "Other" }));
     let vessel = vessel.header("Idempotency-Key", "old");
     assert_eq!(
-        ApiResponse::of(vessel).await.problem(),
+        ApiResponse::send(vessel).await.problem(),
         "idempotency-key-reused"
     );
     // Sessions and tokens refer to their user: a removed user is signed out.
@@ -121,8 +121,8 @@ async fn check_nothing_is_lost(engine: Engine) {
         .run_sql("DELETE FROM users WHERE role = 'viewer'")
         .await;
     let gone = server.http.get(url("/me")).bearer_auth("bna_token1");
-    assert_eq!(ApiResponse::of(gone).await.problem(), "unauthenticated");
-    let left = ApiResponse::of(request(Method::GET, "/me")).await;
+    assert_eq!(ApiResponse::send(gone).await.problem(), "unauthenticated");
+    let left = ApiResponse::send(request(Method::GET, "/me")).await;
     assert_eq!(left.status, 200);
     server.finish().await;
 }

@@ -33,9 +33,9 @@ fn every_response_is_described_and_every_error_is_a_problem() {
 async fn the_document_and_its_page_need_no_sign_in() {
     let server = TestServer::start(Engine::Sqlite).await;
     let document =
-        ApiResponse::of(server.http.get(format!("{}/api/openapi.json", server.url))).await;
+        ApiResponse::send(server.http.get(format!("{}/api/openapi.json", server.url))).await;
     assert_eq!(document.good()["openapi"], "3.1.0");
-    let page = ApiResponse::of(server.http.get(format!("{}/api/docs", server.url))).await;
+    let page = ApiResponse::send(server.http.get(format!("{}/api/docs", server.url))).await;
     let paths: Value = document.json()["paths"].take();
     for path in paths.as_object().unwrap().keys() {
         assert!(

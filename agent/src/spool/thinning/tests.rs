@@ -148,7 +148,7 @@ async fn a_batch_that_was_thinned_after_it_was_read_is_not_sent_as_it_was() {
 }
 
 #[tokio::test]
-async fn what_was_thinned_before_enrolment_is_said_in_the_first_batch() {
+async fn the_first_batch_reports_samples_thinned_before_enrolment() {
     let directory = TempDir::new().unwrap();
     let spool = Spool::open(directory.path()).await.unwrap();
     let samples: Vec<Sample> = (0..21_000).map(sample).collect();

@@ -31,7 +31,7 @@ async fn waiting_rig(batches: i64) -> Rig {
         "slow down",
     );
     let fake = Fake {
-        answers: [busy.into_response()].into(),
+        responses: [busy.into_response()].into(),
         ..Fake::default()
     };
     let mut rig = rig(batches, fake).await;

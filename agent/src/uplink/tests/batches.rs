@@ -20,7 +20,7 @@ async fn every_batch_is_sent_and_then_forgotten() {
 #[tokio::test]
 async fn no_failure_of_the_link_loses_a_batch() {
     let login = "<html>Welcome to Harbour Wi-Fi</html>";
-    let answers = [
+    let responses = [
         (StatusCode::OK, login).into_response(),
         (StatusCode::FOUND, [("location", "http://portal/")]).into_response(),
         (StatusCode::FORBIDDEN, login).into_response(),
@@ -29,7 +29,7 @@ async fn no_failure_of_the_link_loses_a_batch() {
         problem(StatusCode::SERVICE_UNAVAILABLE, "busy"),
     ];
     let fake = Fake {
-        answers: answers.into(),
+        responses: responses.into(),
         ..Fake::default()
     };
     let mut rig = rig(2, fake).await;
@@ -47,7 +47,7 @@ async fn no_json_of_a_proxy_passes_for_the_servers_word() {
     };
     let mut rig = rig(3, Fake::default()).await;
     rig.all_sent().await;
-    let answers = [
+    let responses = [
         says(400, json!({ "error": "bad request" })),
         says(401, json!({ "error": "login required" })),
         says(403, json!({ "captive": true })),
@@ -56,7 +56,7 @@ async fn no_json_of_a_proxy_passes_for_the_servers_word() {
         says(409, json!({ "type": "stream-forked" })),
         says(410, json!({})),
     ];
-    rig.fake.lock().unwrap().answers.extend(answers);
+    rig.fake.lock().unwrap().responses.extend(responses);
     seal(&rig.spool, 3).await;
     rig.link.mark_unchanged();
     rig.sealed.notify_one();
@@ -80,7 +80,7 @@ async fn the_server_is_given_the_time_it_asks_for() {
         "slow down",
     );
     let fake = Fake {
-        answers: [busy.into_response()].into(),
+        responses: [busy.into_response()].into(),
         ..Fake::default()
     };
     let before = Instant::now();
@@ -139,7 +139,7 @@ async fn a_server_that_lost_the_stream_gets_all_of_it_in_a_new_one() {
     let mut rig = rig(3, Fake::default()).await;
     rig.all_sent().await;
     let lost = problem(StatusCode::NOT_FOUND, "not-found");
-    rig.fake.lock().unwrap().answers.push_back(lost);
+    rig.fake.lock().unwrap().responses.push_back(lost);
     seal(&rig.spool, 3).await;
     rig.link.mark_unchanged();
     rig.sealed.notify_one();
@@ -150,7 +150,7 @@ async fn a_server_that_lost_the_stream_gets_all_of_it_in_a_new_one() {
 #[tokio::test]
 async fn a_refused_batch_is_kept_aside_and_does_not_block_the_next() {
     let fake = Fake {
-        answers: [problem(StatusCode::UNPROCESSABLE_ENTITY, "undecodable")].into(),
+        responses: [problem(StatusCode::UNPROCESSABLE_ENTITY, "undecodable")].into(),
         ..Fake::default()
     };
     let mut rig = rig(2, fake).await;
@@ -168,7 +168,7 @@ async fn a_refused_batch_is_kept_aside_and_does_not_block_the_next() {
 async fn what_was_refused_goes_when_the_server_takes_the_first_of_it() {
     let refusal = || problem(StatusCode::UNPROCESSABLE_ENTITY, "undecodable");
     let fake = Fake {
-        answers: [refusal(), refusal(), refusal()].into(),
+        responses: [refusal(), refusal(), refusal()].into(),
         ..Fake::default()
     };
     let mut rig = rig(3, fake).await;
@@ -185,7 +185,7 @@ async fn what_was_refused_goes_when_the_server_takes_the_first_of_it() {
 #[tokio::test]
 async fn a_batch_that_the_disk_has_damaged_keeps_no_number_open() {
     let fake = Fake {
-        answers: [problem(StatusCode::BAD_REQUEST, "bad-request")].into(),
+        responses: [problem(StatusCode::BAD_REQUEST, "bad-request")].into(),
         ..Fake::default()
     };
     let mut rig = rig(0, fake).await;
@@ -207,7 +207,7 @@ async fn a_batch_that_the_disk_has_damaged_keeps_no_number_open() {
 #[tokio::test]
 async fn a_token_that_is_not_known_keeps_the_data_and_says_so() {
     let fake = Fake {
-        answers: [
+        responses: [
             problem(StatusCode::UNAUTHORIZED, "unauthorized"),
             problem(StatusCode::FORBIDDEN, "forbidden"),
         ]

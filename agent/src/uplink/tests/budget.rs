@@ -64,7 +64,7 @@ async fn waiting_batches_are_reported_and_the_budget_where_it_is_short() {
 }
 
 #[tokio::test]
-async fn a_request_is_paid_for_before_it_is_made_and_the_answer_after() {
+async fn a_request_is_paid_for_before_it_is_made_and_the_response_after() {
     let plan = Profile::Metered.plan(None);
     let mut rig = rig_with(1, Fake::default(), &plan, Some(left(8_000.0))).await;
     rig.all_sent().await;
@@ -72,9 +72,9 @@ async fn a_request_is_paid_for_before_it_is_made_and_the_answer_after() {
     let fake = rig.fake.lock().unwrap();
     let sent = fake.batches[&(STREAM, 1)].len();
     // In the compact form, with nothing new in it.
-    let answer = 13;
+    let response = 13;
     // A connection, a request, and the segments of both bodies.
-    let cost = 1_700.0 + 389.0 + 1.07 * (sent + answer) as f64;
+    let cost = 1_700.0 + 389.0 + 1.07 * (sent + response) as f64;
     assert!(
         (kept.remaining_bytes + cost - 8_000.0).abs() < 1.0,
         "{kept:?}"

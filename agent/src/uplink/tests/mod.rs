@@ -35,7 +35,7 @@ struct Fake {
     batches: BTreeMap<(Uuid, u64), Vec<u8>>,
     streams: u128,
     queries: Vec<HashMap<String, String>>,
-    answers: VecDeque<Response>,
+    responses: VecDeque<Response>,
     settings: Option<Settings>,
     withdrawn: Option<CardWithdrawn>,
     /// A model that no agent can read.
@@ -43,7 +43,7 @@ struct Fake {
     requests: u32,
     polls: u32,
     reports: Vec<(Uuid, LogbookReport)>,
-    report_answers: VecDeque<Response>,
+    report_responses: VecDeque<Response>,
     /// Numbers of the stored batches, in order; 0 for a report.
     order: Vec<u64>,
 }
@@ -79,8 +79,8 @@ async fn put_batch(
     let mut fake = fake.lock().unwrap();
     fake.requests += 1;
     fake.queries.push(query.clone());
-    if let Some(answer) = fake.answers.pop_front() {
-        return answer;
+    if let Some(response) = fake.responses.pop_front() {
+        return response;
     }
     let known = fake
         .batches
@@ -91,7 +91,7 @@ async fn put_batch(
         return problem(StatusCode::CONFLICT, "stream-forked");
     }
     fake.order.push(seq);
-    answer_in_form(&fake, stream, &query)
+    respond_in_form(&fake, stream, &query)
 }
 
 async fn put_report(
@@ -103,8 +103,8 @@ async fn put_report(
     let revision = report.revision;
     fake.reports.push((id, report));
     fake.order.push(0);
-    if let Some(answer) = fake.report_answers.pop_front() {
-        return answer;
+    if let Some(response) = fake.report_responses.pop_front() {
+        return response;
     }
     Json(json!({ "revision": revision, "withdrawn": false })).into_response()
 }
@@ -116,11 +116,11 @@ async fn get_downlink(
 ) -> Response {
     let mut fake = fake.lock().unwrap();
     fake.polls += 1;
-    answer_in_form(&fake, stream, &query)
+    respond_in_form(&fake, stream, &query)
 }
 
 /// Responds in the requested form; an unreadable model is JSON, as of an old server.
-fn answer_in_form(fake: &Fake, stream: Uuid, query: &HashMap<String, String>) -> Response {
+fn respond_in_form(fake: &Fake, stream: Uuid, query: &HashMap<String, String>) -> Response {
     let sent = downlink(fake, stream);
     if fake.unreadable.is_some() || query["form"] != "1" {
         return Json(sent).into_response();

@@ -35,11 +35,11 @@ impl Rig {
 }
 
 #[tokio::test]
-async fn a_report_is_sent_until_it_is_answered() {
+async fn a_report_is_sent_until_the_server_responds() {
     let lost = || StatusCode::BAD_GATEWAY.into_response();
     let busy = problem(StatusCode::SERVICE_UNAVAILABLE, "busy");
     let fake = Fake {
-        report_answers: VecDeque::from([lost(), busy]),
+        report_responses: VecDeque::from([lost(), busy]),
         ..Fake::default()
     };
     let mut rig = rig(1, fake).await;
@@ -56,7 +56,7 @@ async fn a_report_is_sent_until_it_is_answered() {
 async fn a_report_that_is_refused_is_kept_with_the_reason_and_the_next_one_goes() {
     let refused = problem(StatusCode::UNPROCESSABLE_ENTITY, "invalid");
     let fake = Fake {
-        report_answers: VecDeque::from([refused]),
+        report_responses: VecDeque::from([refused]),
         ..Fake::default()
     };
     let rig = rig(0, fake).await;
@@ -74,7 +74,7 @@ async fn a_report_that_is_refused_is_kept_with_the_reason_and_the_next_one_goes(
 async fn a_server_that_knows_no_reports_gets_its_batches_all_the_same() {
     let unknown = problem(StatusCode::NOT_FOUND, "not-found");
     let fake = Fake {
-        report_answers: VecDeque::from([unknown]),
+        report_responses: VecDeque::from([unknown]),
         ..Fake::default()
     };
     let mut rig = rig(0, fake).await;

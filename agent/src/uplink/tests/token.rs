@@ -6,7 +6,7 @@ use super::*;
 async fn an_agent_that_did_not_hear_whether_its_token_was_replaced_tries_both() {
     let unknown = || problem(StatusCode::UNAUTHORIZED, "unauthorized");
     let fake = Fake {
-        answers: [unknown()].into(),
+        responses: [unknown()].into(),
         ..Fake::default()
     };
     let mut rig = rig(0, fake).await;
@@ -31,8 +31,8 @@ async fn an_agent_of_whose_tokens_none_is_known_says_that_it_must_be_enrolled_ag
     let mut rig = rig(0, Fake::default()).await;
     rig.all_sent().await;
     rig.spool.save_other_token("before").await.unwrap();
-    let answers = [unknown(), unknown(), unknown()];
-    rig.fake.lock().unwrap().answers.extend(answers);
+    let responses = [unknown(), unknown(), unknown()];
+    rig.fake.lock().unwrap().responses.extend(responses);
     seal(&rig.spool, 1).await;
     rig.sealed.notify_one();
     let says = |link: &LinkStatus| {
@@ -58,8 +58,8 @@ async fn a_token_that_is_replaced_while_a_batch_is_on_its_way_costs_no_second_on
             .map(|()| acknowledged)
             .map_err(axum::Error::new)
     });
-    let answer = axum::body::Body::from_stream(later).into_response();
-    rig.fake.lock().unwrap().answers.push_back(answer);
+    let response = axum::body::Body::from_stream(later).into_response();
+    rig.fake.lock().unwrap().responses.push_back(response);
     seal(&rig.spool, 1).await;
     rig.link.mark_unchanged();
     rig.sealed.notify_one();

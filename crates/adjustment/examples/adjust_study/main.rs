@@ -36,7 +36,7 @@ fn main() {
     if wanted("plans") {
         for (name, instruments) in [("fluxgate", FLUXGATE), ("phone", PHONE)] {
             for (design, which) in [("class A", 0), ("small", 1)] {
-                let tally = Tally::of(0..ships, which, instruments);
+                let tally = Tally::from_seeds(0..ships, which, instruments);
                 println!("{name}, {design}: {tally}");
             }
         }
@@ -56,14 +56,14 @@ fn main() {
             for ending in [Ending::ByCompass, Ending::ReadAgain] {
                 println!(
                     "{slip:?}, {ending:?}: {}",
-                    Hands::of(0..ships, slip, ending)
+                    Hands::from_seeds(0..ships, slip, ending)
                 );
             }
         }
     }
     if wanted("sea") {
         let wrong_deg = [0.0, 1.0, 2.0, 3.0];
-        for (wrong_deg, sea) in wrong_deg.iter().zip(Sea::of(0..ships, &wrong_deg)) {
+        for (wrong_deg, sea) in wrong_deg.iter().zip(Sea::from_seeds(0..ships, &wrong_deg)) {
             println!("wrong by {wrong_deg}: {sea}");
         }
     }

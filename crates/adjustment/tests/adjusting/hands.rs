@@ -130,7 +130,7 @@ enum Next {
 }
 
 impl Hands {
-    pub(crate) fn of(seeds: std::ops::Range<u64>, slip: Slip, ending: Ending) -> Hands {
+    pub(crate) fn from_seeds(seeds: std::ops::Range<u64>, slip: Slip, ending: Ending) -> Hands {
         let mut hands = Hands::default();
         for seed in seeds {
             hands.add(seed, slip, ending);

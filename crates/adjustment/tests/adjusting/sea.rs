@@ -30,7 +30,7 @@ pub(crate) struct Sea {
 impl Sea {
     /// Ships with these errors of permanent magnetism in the plan, on the worst heading at
     /// the berth, degrees: one tally for each.
-    pub(crate) fn of(seeds: std::ops::Range<u64>, wrong_deg: &[f64]) -> Vec<Sea> {
+    pub(crate) fn from_seeds(seeds: std::ops::Range<u64>, wrong_deg: &[f64]) -> Vec<Sea> {
         let mut seas: Vec<Sea> = wrong_deg.iter().map(|_| Sea::default()).collect();
         for seed in seeds {
             let mut scene = Scene::new(seed, 0, FLUXGATE);

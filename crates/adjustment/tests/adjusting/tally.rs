@@ -34,7 +34,11 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    pub(crate) fn of(seeds: std::ops::Range<u64>, which: usize, instruments: Instruments) -> Tally {
+    pub(crate) fn from_seeds(
+        seeds: std::ops::Range<u64>,
+        which: usize,
+        instruments: Instruments,
+    ) -> Tally {
         let mut tally = Tally::default();
         for seed in seeds {
             tally.add(&Scene::new(seed, which, instruments));

@@ -113,7 +113,7 @@ fn print(entries: &[Entry], quiet: &[Ship], fleets: &[Vec<Ship>]) {
     for (k, (fleet, (event, _))) in fleets.iter().zip(EVENTS).enumerate() {
         let delays: Vec<Delays> = entries
             .iter()
-            .map(|entry| Delays::of(fleet, &entry.events[k]))
+            .map(|entry| Delays::from_alarms(fleet, &entry.events[k]))
             .collect();
         let bound = hours(delays[0].median_bound_hours());
         println!(

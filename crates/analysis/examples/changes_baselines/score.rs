@@ -77,7 +77,7 @@ pub(crate) struct Delays(Vec<Delay>);
 
 impl Delays {
     /// By the first alarm after the event.
-    pub(crate) fn of(ships: &[Ship], found: &[Vec<usize>]) -> Delays {
+    pub(crate) fn from_alarms(ships: &[Ship], found: &[Vec<usize>]) -> Delays {
         let delay = |(ship, alarms): (&Ship, &Vec<usize>)| {
             let (event, changed) = ship.event.zip(ship.changed_row())?;
             let reported = alarms.iter().copied().find(|row| *row >= changed);

@@ -74,27 +74,27 @@ pub(crate) struct Ship {
 impl Ship {
     /// One year without an event, but with storms, anomalies, faults and wild readings.
     pub(crate) fn quiet(seed: u64) -> Ship {
-        Ship::of(&sail_log(
+        Ship::from_log(&sail_log(
             seed,
             &Plan {
                 days: QUIET_DAYS,
-                ..Plan::of(Event::Nothing, variety(seed))
+                ..Plan::new(Event::Nothing, variety(seed))
             },
         ))
     }
 
     /// One whose magnetism changes when the learning is over.
     pub(crate) fn that_changes(seed: u64, event: Event) -> Ship {
-        Ship::of(&sail_log(
+        Ship::from_log(&sail_log(
             seed,
             &Plan {
                 days: EVENT_DAYS,
-                ..Plan::of(event, variety(seed))
+                ..Plan::new(event, variety(seed))
             },
         ))
     }
 
-    fn of(log: &Log) -> Ship {
+    fn from_log(log: &Log) -> Ship {
         let observations = observations(&log.samples);
         let row_of = |days: f64| {
             observations

@@ -140,7 +140,7 @@ fn what_the_product_is_said_to_tell_at_a_time_it_tells_from_the_samples_so_far()
     let plan = Plan {
         days: 45.0,
         event_day: 25.0,
-        ..Plan::of(Event::Step(2000.0), Variety::Medium)
+        ..Plan::new(Event::Step(2000.0), Variety::Medium)
     };
     let samples = sail_log(1, &plan).samples;
     let run = |samples: &[Sample]| analyse(samples, &[], &AnalysisSettings::default());

@@ -67,7 +67,7 @@ pub(crate) fn bands(ships: u64) {
 pub(crate) fn undisturbed(ships: u64) {
     const EVERY_H: f64 = 7.0;
     let found = each(seeds(860_000, ships), |seed| {
-        let mut plan = Plan::of(Event::Nothing, variety(seed));
+        let mut plan = Plan::new(Event::Nothing, variety(seed));
         plan.days = 34.0;
         let log = sail_log(seed, &plan);
         let begun = Timestamp::parse(START).unwrap();
@@ -106,7 +106,7 @@ fn steps(name: &str, nt: f64, ships: u64) {
             "across" => Event::StepBy(nt, side + 90.0),
             _ => Event::Step(nt),
         };
-        let mut plan = Plan::of(event, variety(seed));
+        let mut plan = Plan::new(event, variety(seed));
         (plan.days, plan.event_day) = (34.0, 24.0);
         plan.gyro_faults = 0.0;
         looks(seed, &plan)

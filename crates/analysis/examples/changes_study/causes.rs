@@ -41,7 +41,7 @@ pub(crate) fn causes(ships: u64) {
     println!("taken for:");
     for (name, event, cause) in kinds {
         let found = each(seeds(300_000, ships), |seed| {
-            let mut plan = Plan::of(event, variety(seed));
+            let mut plan = Plan::new(event, variety(seed));
             plan.gyro_faults = 0.0;
             let log = sail_log(seed, &plan);
             let happened = planned(&log, name)?;
@@ -119,7 +119,7 @@ pub(crate) fn storms(ships: u64) {
         let fleet: Vec<(Log, Analysis)> = each(FLEET * fleet..FLEET * (fleet + 1), |seed| {
             let plan = Plan {
                 sun: Some(seed / FLEET),
-                ..Plan::of(Event::Nothing, variety(seed))
+                ..Plan::new(Event::Nothing, variety(seed))
             };
             let log = sail_log(seed, &plan);
             let analysis = run(&log.samples);
@@ -204,7 +204,7 @@ pub(crate) fn brief(ships: u64) {
     println!("over within 1.5 to 3 hours at sea, taken for:");
     for (name, event) in kinds {
         let found = each(seeds(310_000, ships), |seed| {
-            let log = sail_log(seed, &Plan::of(event, variety(seed)));
+            let log = sail_log(seed, &Plan::new(event, variety(seed)));
             let happened = planned(&log, Name::Brief)?;
             let analysis = run(&log.samples);
             for c in alarms(&analysis) {
@@ -238,7 +238,7 @@ pub(crate) fn ramps(ships: u64) {
     println!("what grows for weeks, taken for:");
     for (nt, days) in [(2000.0, 20.0), (3000.0, 30.0), (4000.0, 30.0)] {
         let found = each(seeds(320_000, ships), |seed| {
-            let plan = Plan::of(Event::Ramp(nt, days), variety(seed));
+            let plan = Plan::new(Event::Ramp(nt, days), variety(seed));
             let log = sail_log(seed, &plan);
             let began = planned(&log, Name::Ramp)?.from;
             let analysis = run(&log.samples);

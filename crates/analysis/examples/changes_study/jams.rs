@@ -106,7 +106,7 @@ pub(crate) fn jams(ships: u64) {
 /// Returns the reports three hours after the fault, as it ends or a day after it began, a
 /// day after that, and in the end.
 fn reported(seed: u64, fault: Fault, hours: f64) -> [Report; 4] {
-    let mut plan = Plan::of(Event::Nothing, variety(seed));
+    let mut plan = Plan::new(Event::Nothing, variety(seed));
     (plan.days, plan.gyro_faults, plan.anomalies) = (DAYS, 0.0, 0.0);
     plan.faults.storms_per_month = 0.0;
     let mut log = sail_log(seed, &plan);

@@ -31,7 +31,7 @@ pub(crate) fn large(ships: u64) {
         .filter(|nt| only.is_none_or(|only| (only - nt).abs() < 1.0))
     {
         let found = each(seeds(800_000, ships), |seed| {
-            let mut plan = Plan::of(Event::Step(nt), variety(seed));
+            let mut plan = Plan::new(Event::Step(nt), variety(seed));
             (plan.days, plan.event_day) = (46.0, 33.0);
             plan.gyro_faults = 0.0;
             let log = sail_log(seed, &plan);

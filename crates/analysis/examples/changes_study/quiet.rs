@@ -8,7 +8,7 @@ pub(crate) fn quiet(ships: u64) {
     let found = each(seeds(100_000, ships), |seed| {
         let plan = Plan {
             days: 365.0,
-            ..Plan::of(Event::Nothing, variety(seed))
+            ..Plan::new(Event::Nothing, variety(seed))
         };
         let log = sail_log(seed, &plan);
         let analysis = run(&log.samples);

@@ -124,7 +124,7 @@ fn looks(seed: u64, case: &Case) -> Vec<Look> {
 
 /// Returns the voyage up to a day.
 fn look(seed: u64, case: &Case, day: u32) -> Look {
-    let mut plan = Plan::of(Event::Nothing, variety(seed));
+    let mut plan = Plan::new(Event::Nothing, variety(seed));
     (plan.days, plan.gyro_faults) = (f64::from(day), 0.0);
     plan.faults.slow_gyro_deg *= case.wander;
     // The references' own constants are another question, of many ships.

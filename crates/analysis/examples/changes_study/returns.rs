@@ -42,7 +42,7 @@ pub(crate) fn returns(ships: u64) {
 /// ship with cargo and without, and all noise levels, but not the present state.
 fn ideal(ships: u64) {
     let ratio = each(seeds(400_000, ships), |seed| {
-        let mut plan = Plan::of(Event::Cargo, variety(seed));
+        let mut plan = Plan::new(Event::Cargo, variety(seed));
         plan.days = 130.0;
         information_of_discharge(&sail_log(seed, &plan))
     });
@@ -78,7 +78,7 @@ fn normal(x: f64) -> f64 {
 
 fn returned(how: &str, ships: u64, logbook: impl Fn(u64, &Happened) -> Vec<LogbookEntry> + Sync) {
     let found = each(seeds(400_000, ships), |seed| {
-        let mut plan = Plan::of(Event::Cargo, variety(seed));
+        let mut plan = Plan::new(Event::Cargo, variety(seed));
         plan.days = 130.0;
         let log = sail_log(seed, &plan);
         let cargo = planned(&log, Name::Cargo)?;
@@ -222,7 +222,7 @@ fn may_have_ended(analysis: &Analysis) -> bool {
 /// calls.
 pub(crate) fn permanent(ships: u64) {
     let found = each(seeds(410_000, ships), |seed| {
-        let mut plan = Plan::of(Event::Refit, variety(seed));
+        let mut plan = Plan::new(Event::Refit, variety(seed));
         plan.days = 130.0;
         let log = sail_log(seed, &plan);
         let refit = planned(&log, Name::Refit)?;
@@ -271,7 +271,7 @@ pub(crate) fn permanent(ships: u64) {
 pub(crate) fn calm(ships: u64) {
     for hours in [3.0, 12.0, 24.0] {
         let found = each(seeds(430_000, ships), |seed| {
-            let mut plan = Plan::of(Event::Nothing, variety(seed));
+            let mut plan = Plan::new(Event::Nothing, variety(seed));
             plan.days = 90.0;
             let log = sail_log(seed, &plan);
             let begun = log.samples.first()?.time;
@@ -299,7 +299,7 @@ pub(crate) fn calm(ships: u64) {
 pub(crate) fn lightning(ships: u64) {
     for weeks in [1.0, 4.0] {
         let found = each(seeds(420_000, ships), |seed| {
-            let plan = Plan::of(Event::Lightning(4000.0), variety(seed));
+            let plan = Plan::new(Event::Lightning(4000.0), variety(seed));
             let log = sail_log(seed, &plan);
             let struck = planned(&log, Name::Lightning)?.from;
             after(

@@ -20,7 +20,7 @@ struct Found {
 
 pub(crate) fn steps(name: &str, event: Event, ships: u64) {
     let found = each(seeds(200_000, ships), |seed| {
-        let log = sail_log(seed, &Plan::of(event, variety(seed)));
+        let log = sail_log(seed, &Plan::new(event, variety(seed)));
         let from = planned(&log, Name::Step)?.from;
         let analysis = run(&log.samples);
         let reported = alarms(&analysis)
@@ -80,7 +80,7 @@ pub(crate) fn steps(name: &str, event: Event, ships: u64) {
 /// One reference only: harder.
 pub(crate) fn gyro_alone(ships: u64) {
     let sail = |seed: u64, event: Event| {
-        let mut plan = Plan::of(event, variety(seed));
+        let mut plan = Plan::new(event, variety(seed));
         plan.faults.satellite = false;
         plan.gyro_faults = 0.0;
         sail_log(seed, &plan)

@@ -124,7 +124,7 @@ fn cargo_that_is_noticed_days_after_a_disturbance_at_sea_came_on_board_at_the_ca
     for seed in [530_154_u64, 530_158] {
         let plan = Plan {
             days: 75.0,
-            ..Plan::of(Event::Cargo, varieties[(seed % 3) as usize])
+            ..Plan::new(Event::Cargo, varieties[(seed % 3) as usize])
         };
         let log = sail_log(seed, &plan);
         let loaded = began(&log, Name::Cargo);
@@ -148,7 +148,7 @@ fn cargo_that_is_noticed_days_after_a_disturbance_at_sea_came_on_board_at_the_ca
 fn what_cargo_in_the_logbook_does_is_no_drift_and_may_be_over_with_it() {
     let plan = Plan {
         days: 130.0,
-        ..Plan::of(Event::Cargo, Variety::Rich)
+        ..Plan::new(Event::Cargo, Variety::Rich)
     };
     let log = sail_log(530_160, &plan);
     let cargo = log.happened.iter().find(|h| h.what == Name::Cargo).unwrap();
@@ -171,7 +171,7 @@ fn what_may_have_changed_in_port_unnoticed_widens_the_band() {
     for seed in [410_015_u64, 410_044, 417_052] {
         let plan = Plan {
             days: 80.0,
-            ..Plan::of(Event::Refit, varieties[(seed % 3) as usize])
+            ..Plan::new(Event::Refit, varieties[(seed % 3) as usize])
         };
         let log = sail_log(seed, &plan);
         let port = began(&log, Name::Refit);

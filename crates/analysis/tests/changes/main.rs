@@ -28,7 +28,7 @@ const HOUR_S: f64 = 3600.0;
 
 /// Returns a plan of nothing but one event.
 fn calm(event: Event) -> Plan {
-    let usual = Plan::of(event, Variety::Medium);
+    let usual = Plan::new(event, Variety::Medium);
     Plan {
         days: 45.0,
         event_day: 25.0,
@@ -119,7 +119,7 @@ fn what_leads_by_little_raises_no_alarm() {
     for seed in [107_013_u64, 107_088] {
         let plan = Plan {
             days: 32.0,
-            ..Plan::of(Event::Nothing, varieties[(seed % 3) as usize])
+            ..Plan::new(Event::Nothing, varieties[(seed % 3) as usize])
         };
         let log = sail_log(seed, &plan);
         let analysis = run(&log.samples);
@@ -138,7 +138,7 @@ fn what_leads_by_little_raises_no_alarm() {
 fn what_later_samples_do_not_bear_out_is_withdrawn() {
     let plan = Plan {
         days: 50.0,
-        ..Plan::of(Event::Nothing, Variety::Poor)
+        ..Plan::new(Event::Nothing, Variety::Poor)
     };
     let log = sail_log(107_087, &plan);
     let analysis = run(&log.samples);

@@ -164,7 +164,7 @@ fn a_strike_is_reported_once_whatever_courses_come_after_it() {
     for (seed, variety) in ships {
         let plan = Plan {
             gyro_faults: 0.0,
-            ..Plan::of(Event::Lightning(4000.0), variety)
+            ..Plan::new(Event::Lightning(4000.0), variety)
         };
         let log = sail_log(seed, &plan);
         let struck = began(&log, Name::Lightning);

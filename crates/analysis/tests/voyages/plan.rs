@@ -46,7 +46,7 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    pub(crate) fn of(event: Event, variety: Variety) -> Plan {
+    pub(crate) fn new(event: Event, variety: Variety) -> Plan {
         Plan {
             variety,
             days: 100.0,

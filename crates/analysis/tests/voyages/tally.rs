@@ -75,7 +75,7 @@ pub(crate) struct Tally {
 
 impl Tally {
     /// Sails a ship and fits her.
-    pub(crate) fn of(seed: u64, variety: Variety, days: f64, faults: &Faults) -> Tally {
+    pub(crate) fn from_voyage(seed: u64, variety: Variety, days: f64, faults: &Faults) -> Tally {
         let voyage = sail(seed, variety, days, faults);
         let mut tally = Tally {
             ships: 1,

@@ -55,7 +55,7 @@ pub struct Weights {
 
 impl ByUrgency {
     /// Returns the weight of an urgency.
-    pub fn of(&self, urgency: Urgency) -> Eur {
+    pub fn weight(&self, urgency: Urgency) -> Eur {
         match urgency {
             Urgency::Routine => self.routine,
             Urgency::Soon => self.soon,

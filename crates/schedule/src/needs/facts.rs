@@ -116,7 +116,7 @@ pub enum Side {
 
 impl Side {
     /// Returns the side of a deviation in degrees, positive to the east.
-    pub fn of(deviation_deg: f64) -> Side {
+    pub fn from_deviation(deviation_deg: f64) -> Side {
         if deviation_deg < 0.0 {
             Side::West
         } else {

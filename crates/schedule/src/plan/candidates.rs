@@ -91,7 +91,7 @@ impl<'a> Candidates<'a> {
             let own = candidates.all[first..].iter();
             let without_fees = own.map(|candidate| candidate.quote.cost() - candidate.quote.fee);
             let waits = without_fees.fold(quote::max_waiting_cost(input, job), i64::max);
-            let unmet = input.weights.unmet_eur.of(job.urgency()).cents();
+            let unmet = input.weights.unmet_eur.weight(job.urgency()).cents();
             candidates.problem.unmet.push(unmet + waits);
         }
         candidates

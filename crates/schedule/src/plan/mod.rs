@@ -19,7 +19,9 @@ mod remedies;
 mod schedule;
 mod unscheduled;
 
-pub use schedule::{Change, ChangeKind, Later, Place, PlannedJob, Schedule, Unscheduled, Weighed};
+pub use schedule::{
+    Change, ChangeKind, CostedOption, Later, Place, PlannedJob, Schedule, Unscheduled,
+};
 
 use crate::calls::{BerthHeading, HeadingSource};
 use crate::input::{Checked, Input, JobState};
@@ -129,7 +131,7 @@ fn planned_job(
         chance_of_missing: (quote.chance_of_missing * 1e4).round() / 1e4,
         fee_eur: euros(quote.fee),
         travel_eur: euros(travel(firm, call.port)) * f64::from(teams) / f64::from(jobs_there),
-        weighed: Weighed {
+        weighed: CostedOption {
             risk_eur: euros(quote.risk),
             waiting_eur: euros(quote.waiting),
             late_eur: euros(quote.late),

@@ -137,7 +137,7 @@ pub(super) fn quote(
     // Being late at all costs as much as leaving undone a job that could be
     // done in time.
     let at_all = late_days > 0 && !overdue && weights.late_days.is_none();
-    let late_at_all = i64::from(at_all) * weights.unmet_eur.of(urgency).cents();
+    let late_at_all = i64::from(at_all) * weights.unmet_eur.weight(urgency).cents();
     let more = job.needs.iter().skip(1);
     let extra: i64 = more.map(|_| firm.extra_compass_eur.cents()).sum();
     Ok(Quote {
@@ -146,8 +146,9 @@ pub(super) fn quote(
         chance_of_missing,
         late_days,
         fee: firm.fee_eur.cents() + extra,
-        risk: (chance_of_missing * weights.missed_eur.of(urgency).cents() as f64).round() as i64,
-        waiting: waits * weights.waiting_eur_day.of(urgency).cents(),
+        risk: (chance_of_missing * weights.missed_eur.weight(urgency).cents() as f64).round()
+            as i64,
+        waiting: waits * weights.waiting_eur_day.weight(urgency).cents(),
         late: late_to_come * weights.late_eur_day.cents() + late_at_all,
         early: early_days * weights.early_eur_day.cents(),
         changed: change_cost(input, job, call, firm, day),
@@ -168,14 +169,14 @@ pub(super) fn max_waiting_cost(input: &Input, job: &Job<'_>) -> i64 {
     };
     let at_all = !job.is_overdue(today) && weights.late_days.is_none();
     let late = days(job.due().max(today), ends) * weights.late_eur_day.cents()
-        + i64::from(at_all) * weights.unmet_eur.of(urgency).cents();
-    let waiting = days(today, ends) * weights.waiting_eur_day.of(urgency).cents();
+        + i64::from(at_all) * weights.unmet_eur.weight(urgency).cents();
+    let waiting = days(today, ends) * weights.waiting_eur_day.weight(urgency).cents();
     let changed = job
         .former
         .map_or(0, |former| departure_cost(input, former.state));
     // A day is either early or late.
     let waits = (early * weights.early_eur_day.cents()).max(waiting + late);
-    waits + weights.missed_eur.of(urgency).cents() + changed
+    waits + weights.missed_eur.weight(urgency).cents() + changed
 }
 
 /// Returns the cost of departing from the previous plan.

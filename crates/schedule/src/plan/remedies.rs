@@ -217,7 +217,12 @@ impl<'a> Remedies<'a> {
         let more = self.job.needs.iter().skip(1);
         let extra: i64 = more.map(|_| firm.extra_compass_eur.cents()).sum();
         let price = firm.fee_eur.cents() + extra + firm.travel(port).map_or(0, Eur::cents);
-        let worth = self.input.weights.unmet_eur.of(self.job.urgency()).cents();
+        let worth = self
+            .input
+            .weights
+            .unmet_eur
+            .weight(self.job.urgency())
+            .cents();
         (price >= worth).then_some(price - worth)
     }
 

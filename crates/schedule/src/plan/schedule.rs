@@ -71,14 +71,14 @@ pub struct PlannedJob {
     /// Its share of the team's travel.
     pub travel_eur: f64,
     /// Weighted costs.
-    pub weighed: Weighed,
+    pub weighed: CostedOption,
 }
 
 /// Weighted costs of a job beyond what is paid, in euros.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "openapi", schema(as = PlannedJobWeighed))]
-pub struct Weighed {
+pub struct CostedOption {
     /// Risk of missing the ship, euros.
     pub risk_eur: f64,
     /// Days of waiting, euros.

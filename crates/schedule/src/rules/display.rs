@@ -1,6 +1,6 @@
 //! Rules as text.
 
-use super::{Citation, EventKind, Read};
+use super::{Citation, EventKind, Provenance};
 use std::fmt;
 
 impl fmt::Display for Citation {
@@ -10,8 +10,8 @@ impl fmt::Display for Citation {
             write!(f, ", {section}")?;
         }
         match self.read {
-            Read::FirstHand => Ok(()),
-            Read::SecondHand => f.write_str(", read second-hand"),
+            Provenance::FirstHand => Ok(()),
+            Provenance::SecondHand => f.write_str(", read second-hand"),
         }
     }
 }

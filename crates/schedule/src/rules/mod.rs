@@ -89,13 +89,13 @@ pub struct Citation {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub section: Option<String>,
     /// First-hand or second-hand reading.
-    pub read: Read,
+    pub read: Provenance,
 }
 
 /// The project's reading of a rule's text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Read {
+pub enum Provenance {
     /// The document itself was read, from its issuer.
     FirstHand,
     /// A copy elsewhere was read, or a document that quotes it.

@@ -9,7 +9,7 @@
 //! Invariants: the assignment stays feasible, and a need is placed at exactly
 //! the returned cost.
 
-use super::chain_moves::apply;
+use super::chain_moves::{Move, apply};
 use super::problem::Problem;
 use super::state::State;
 use super::work_limit::WorkLimit;
@@ -136,12 +136,15 @@ impl<'a> Chains<'a> {
         if end.cost >= limit {
             return None;
         }
-        let mut moves: Vec<(usize, Option<usize>)> = Vec::new();
-        moves.extend(end.unmet.map(|need| (need, None)));
+        let mut moves: Vec<Move> = Vec::new();
+        moves.extend(end.unmet.map(|need| Move { need, choice: None }));
         let mut at = end.at;
         while let Some(visit) = at {
             let link = self.by[visit];
-            moves.push((link.need, Some(link.choice)));
+            moves.push(Move {
+                need: link.need,
+                choice: Some(link.choice),
+            });
             at = link.from;
         }
         apply(state, need, &moves, limit)

@@ -56,7 +56,7 @@ pub(super) struct Prices<'a> {
 impl<'a> Prices<'a> {
     /// Starts with the cost of each need's cheapest choice alone.
     pub(super) fn new(problem: &'a Problem) -> Prices<'a> {
-        let subproblem = Subproblem::of(problem);
+        let subproblem = Subproblem::new(problem);
         let most: Vec<f64> = problem.unmet.iter().map(|unmet| *unmet as f64).collect();
         let mut at = most.clone();
         for choice in &problem.choices {

@@ -121,7 +121,7 @@ fn branch_and_bound(
     work: &mut WorkLimit,
 ) -> (Assignment, bool) {
     for round in 0..=ROUNDS {
-        let open = Open::of(problem, bound, &found, cost_of(problem, &found));
+        let open = Open::from_bound(problem, bound, &found, cost_of(problem, &found));
         let finished = branch_and_bound::solve_parts(problem, &open, found, EFFORT, work);
         found = finished.assignment;
         let cost = cost_of(problem, &found);

@@ -32,7 +32,12 @@ impl Open {
         }
     }
 
-    pub(super) fn of(problem: &Problem, bound: &Bound, found: &[Option<usize>], cost: i64) -> Open {
+    pub(super) fn from_bound(
+        problem: &Problem,
+        bound: &Bound,
+        found: &[Option<usize>],
+        cost: i64,
+    ) -> Open {
         let gap = cost - bound.cost;
         let choices = problem.choices.iter().zip(&bound.reduced).enumerate();
         Open {

@@ -32,7 +32,7 @@ struct Load {
 }
 
 impl<'a> Subproblem<'a> {
-    pub(super) fn of(problem: &'a Problem) -> Subproblem<'a> {
+    pub(super) fn new(problem: &'a Problem) -> Subproblem<'a> {
         let mut days = Subproblem {
             problem,
             seats: Vec::with_capacity(problem.choices.len()),

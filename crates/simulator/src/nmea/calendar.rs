@@ -17,7 +17,7 @@ pub(crate) struct CalendarTime {
 
 impl CalendarTime {
     /// Converts a time; years before 0 are not supported.
-    pub(crate) fn of(time: Timestamp) -> CalendarTime {
+    pub(crate) fn from_timestamp(time: Timestamp) -> CalendarTime {
         let micros = time.micros();
         let (year, month, day) = civil(micros.div_euclid(86_400_000_000));
         let centiseconds = micros.rem_euclid(86_400_000_000) as u64 / 10_000;
@@ -61,7 +61,7 @@ mod tests {
         for step in 0..20_000_i64 {
             let micros = -2_208_988_800_000_000 + step * 315_569_520_000;
             let time = Timestamp::from_micros(micros).unwrap();
-            let at = CalendarTime::of(time);
+            let at = CalendarTime::from_timestamp(time);
             let seconds = at.centisecond / 100;
             let text = format!(
                 "{:04}-{:02}-{:02}T{:02}:{:02}:{seconds:02}",

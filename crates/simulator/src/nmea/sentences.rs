@@ -52,7 +52,7 @@ pub(crate) fn gprmc(
     sog_kn: f64,
     cog_deg: f64,
 ) {
-    let at = CalendarTime::of(time);
+    let at = CalendarTime::from_timestamp(time);
     sentence(out, b"$GPRMC,", |out| {
         clock(out, &at);
         out.extend_from_slice(b",A,");
@@ -74,7 +74,7 @@ pub(crate) fn gprmc(
 
 /// `$GPZDA` in UTC.
 pub(crate) fn gpzda(out: &mut Vec<u8>, time: Timestamp) {
-    let at = CalendarTime::of(time);
+    let at = CalendarTime::from_timestamp(time);
     sentence(out, b"$GPZDA,", |out| {
         clock(out, &at);
         out.push(b',');

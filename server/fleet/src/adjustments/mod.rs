@@ -140,14 +140,14 @@ impl Row {
             adjuster_name: self.adjuster_name,
             adjuster_licence: self.adjuster_licence,
             firm: self.firm,
-            at_sea: at_sea.and_then(|(at, verified)| AtSea::of(at, &verified)),
+            at_sea: at_sea.and_then(|(at, verified)| AtSea::from_verdict(at, &verified)),
         })
     }
 }
 
 impl AtSea {
     /// Returns `None` for a verdict other than agreement.
-    fn of(verified_at: Time, verified: &Verdict) -> Option<AtSea> {
+    fn from_verdict(verified_at: Time, verified: &Verdict) -> Option<AtSea> {
         let Verification::Passed {
             headings, rms_deg, ..
         } = verified.verification

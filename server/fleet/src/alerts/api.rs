@@ -125,7 +125,7 @@ async fn change(
         _ => store::clear(&mut tx, vessel, id, &remark).await?,
     };
     if has_changed {
-        let pending = [PendingChange::of(id, kind)];
+        let pending = [PendingChange::from_kind(id, kind)];
         let event = publish_changes(&mut tx, vessel, &pending, now).await?;
         tx.commit().await?;
         if let Some(event) = event {

@@ -31,7 +31,7 @@ pub(super) struct AlertChange {
 
 impl PendingChange {
     /// Makes a change of a kind that leaves the severity as it was.
-    pub(super) fn of(alert: AlertId, kind: Kind) -> PendingChange {
+    pub(super) fn from_kind(alert: AlertId, kind: Kind) -> PendingChange {
         PendingChange {
             alert,
             kind: Some(kind),

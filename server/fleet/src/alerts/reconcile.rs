@@ -75,7 +75,7 @@ pub(super) async fn reconcile(
         };
         store::end(tx, vessel, alert.id, reason, now).await?;
         if alert.state != State::Cleared {
-            changes.push(PendingChange::of(alert.id, Kind::AlertCleared));
+            changes.push(PendingChange::from_kind(alert.id, Kind::AlertCleared));
         }
     }
     for desired in desired {
@@ -93,7 +93,7 @@ async fn open_or_update(
     desired: &DesiredAlert,
     now: Time,
 ) -> Result<Vec<PendingChange>> {
-    let raised = |alert| PendingChange::of(alert, Kind::AlertRaised);
+    let raised = |alert| PendingChange::from_kind(alert, Kind::AlertRaised);
     let Some(known) = known else {
         let id = store::insert(tx, vessel, compass, desired, now).await?;
         return Ok(vec![raised(id)]);
@@ -103,7 +103,7 @@ async fn open_or_update(
     let is_cleared = known.state == State::Cleared;
     if is_another || (is_cleared && is_worse) {
         store::end(tx, vessel, known.id, FOLLOWED, now).await?;
-        let cleared = (!is_cleared).then(|| PendingChange::of(known.id, Kind::AlertCleared));
+        let cleared = (!is_cleared).then(|| PendingChange::from_kind(known.id, Kind::AlertCleared));
         let id = store::insert(tx, vessel, compass, desired, now).await?;
         return Ok(cleared.into_iter().chain([raised(id)]).collect());
     }

@@ -148,7 +148,7 @@ async fn queue_others(
 pub async fn compare_with_fleet(db: &Db, vessel: VesselId, findings: &mut Findings) -> Result<()> {
     let until = findings.data_until;
     for found in findings.changes.iter_mut().filter(|found| may_pass(found)) {
-        let Some(near) = Neighbourhood::of(found, until) else {
+        let Some(near) = Neighbourhood::from_finding(found, until) else {
             continue;
         };
         let others = rows!(
@@ -177,7 +177,7 @@ pub async fn compare_with_fleet_in(
 ) -> Result<()> {
     let until = findings.data_until;
     for found in findings.changes.iter_mut().filter(|found| may_pass(found)) {
-        let Some(near) = Neighbourhood::of(found, until) else {
+        let Some(near) = Neighbourhood::from_finding(found, until) else {
             continue;
         };
         let others: DbResult<Vec<OtherDisturbance>> = rows!(
@@ -203,7 +203,7 @@ fn may_pass(found: &ChangeFinding) -> bool {
 }
 
 impl Neighbourhood {
-    fn of(found: &ChangeFinding, data_until: Option<Timestamp>) -> Option<Neighbourhood> {
+    fn from_finding(found: &ChangeFinding, data_until: Option<Timestamp>) -> Option<Neighbourhood> {
         let from = found.change.from;
         let until = found.change.ended.or(data_until)?.max(from);
         // No place is in an empty belt.

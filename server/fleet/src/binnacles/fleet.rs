@@ -89,8 +89,11 @@ async fn list_binnacles(
     let after = page.after_id()?;
     let found = store::of_fleet(&app.db, reader.operator, after, page.fetch()).await?;
     let listed = page.cut(found, |row| row.compass_id.to_string());
-    let items: Result<Vec<FleetBinnacle>> =
-        listed.items.into_iter().map(FleetBinnacle::of).collect();
+    let items: Result<Vec<FleetBinnacle>> = listed
+        .items
+        .into_iter()
+        .map(FleetBinnacle::from_row)
+        .collect();
     Ok(Json(FleetBinnacleList {
         items: items?,
         next: listed.next,
@@ -98,8 +101,8 @@ async fn list_binnacles(
 }
 
 impl FleetBinnacle {
-    fn of(row: store::CompassRow) -> Result<FleetBinnacle> {
-        let binnacle = row.revised()?.map(BinnacleInShort::of);
+    fn from_row(row: store::CompassRow) -> Result<FleetBinnacle> {
+        let binnacle = row.revised()?.map(BinnacleInShort::from_revision);
         Ok(FleetBinnacle {
             vessel_id: row.vessel_id,
             vessel_name: row.vessel_name,
@@ -112,7 +115,7 @@ impl FleetBinnacle {
 }
 
 impl BinnacleInShort {
-    fn of(written: store::StoredRevision) -> BinnacleInShort {
+    fn from_revision(written: store::StoredRevision) -> BinnacleInShort {
         let binnacle: &Binnacle = &written.binnacle.0;
         BinnacleInShort {
             maker: binnacle.design.maker.clone(),

@@ -49,7 +49,7 @@ pub(super) fn next_due(facts: &Facts<'_>) -> Option<CardNextDue> {
             on: facts.at.day().parse().ok()?,
             place: None,
             worst_deviation_deg: facts.worst_deviation_deg.abs(),
-            side: Some(Side::of(facts.worst_deviation_deg)),
+            side: Some(Side::from_deviation(facts.worst_deviation_deg)),
         }],
         deviation_limit_deg: Limit::try_from(facts.own_limit_deg).ok(),
         ..needs::Compass::default()

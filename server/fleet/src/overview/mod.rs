@@ -173,7 +173,7 @@ fn assemble(found: store::FleetRecords) -> Fleet {
         let track = tracks.remove(&row.id).map(|stored| stored.track);
         let alerts = alerts.remove(&row.id).unwrap_or_default();
         let call = calls.remove(&row.id);
-        let call = call.map(|call| NextCall::of(call, model.as_ref()));
+        let call = call.map(|call| NextCall::from_port_call(call, model.as_ref()));
         row.with(model.as_ref(), track.unwrap_or_default(), call, alerts)
     });
     Fleet {
@@ -208,7 +208,7 @@ impl VesselRow {
             track,
             next_call,
             worst: model.and_then(StoredModel::worst).map(rounded),
-            model: model.map(FleetModel::of),
+            model: model.map(FleetModel::from_model),
             open_alerts: alerts.iter().filter(|alert| alert.is_raised()).count() as u32,
             alert: alerts
                 .into_iter()
@@ -219,7 +219,7 @@ impl VesselRow {
 }
 
 impl NextCall {
-    fn of(call: NextPortCall, model: Option<&StoredModel>) -> NextCall {
+    fn from_port_call(call: NextPortCall, model: Option<&StoredModel>) -> NextCall {
         let port = PortCode::parse(&call.port).ok().and_then(ports::find);
         let worst = port.zip(model).and_then(|(port, model)| {
             let earth = field(FieldModel::Igrf14, port.position, 0.0, call.eta.0).ok()?;
@@ -249,7 +249,7 @@ fn thousandth(degrees: f64) -> f64 {
 }
 
 impl FleetModel {
-    fn of(model: &StoredModel) -> FleetModel {
+    fn from_model(model: &StoredModel) -> FleetModel {
         let quality = model.model.0.quality.as_ref();
         FleetModel {
             version: model.version,

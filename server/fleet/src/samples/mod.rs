@@ -1,8 +1,8 @@
 //! Samples of a compass, each with its outcome in the last analysis.
 
+mod chart_data;
 mod coverage;
 mod export;
-mod picture;
 
 use crate::analysis;
 use crate::compasses;
@@ -16,7 +16,7 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Params, time};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
-use picture::SamplePicture;
+use chart_data::SamplePicture;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
@@ -138,7 +138,7 @@ async fn draw_samples(
     Params(range): Params<Range>,
 ) -> Result<Json<SamplePicture>> {
     let samples = find(&app, reader, id, &range).await?;
-    Ok(Json(picture::picture(&samples)))
+    Ok(Json(chart_data::summarize(&samples)))
 }
 
 async fn find(

@@ -1,8 +1,8 @@
 //! Check of the reading at the berth.
 //!
-//! What always holds: a refused reading is kept with the reason. An accepted reading is kept with
-//! everything that a plan from it depends on, so that the plan can be repeated from the log
-//! alone. The field names are those of `plan` (docs/plan.md).
+//! Invariants: a refused reading is kept with the reason. An accepted reading is kept with
+//! everything that a plan from it depends on, so that the plan can be repeated from the log alone.
+//! The field names are those of `plan` (docs/plan.md).
 
 use crate::work_orders::payload::basis::Basis;
 use crate::work_orders::payload::recorded_reading::BerthCheck;

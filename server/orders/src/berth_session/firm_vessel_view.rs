@@ -1,7 +1,7 @@
 //! View of the vessel for a firm with an open order.
 //!
-//! What always holds: a firm reads model and binnacle of the order's compass alone, and only from
-//! the offer to the completion of the adjustment. The audit log records each access.
+//! Invariants: a firm reads model and binnacle of the order's compass alone, and only from the
+//! offer to the completion of the adjustment. The audit log records each access.
 
 use crate::work_orders::store;
 use crate::work_orders::summary::Summary;

@@ -1,7 +1,7 @@
 //! Photographs, kept as they were uploaded.
 //!
-//! What always holds: the type of a file follows from its first bytes, whatever its name. It has
-//! a header of that type with a plausible size. It is served as that type and never as a page.
+//! Invariants: the type of a file follows from its first bytes, whatever its name. It has a header
+//! of that type with a plausible size. It is served as that type and never as a page.
 
 use crate::work_orders::log::canonical_json::sha256_hex;
 use crate::work_orders::payload::photograph::Photo;

@@ -1,7 +1,7 @@
 //! Plausibility of the place and the time of a reading at the berth.
 //!
-//! What always holds: a reading is refused by independent knowledge alone, the port of the order
-//! and the vessel's own track. Without either it is accepted.
+//! Invariants: a reading is refused by independent knowledge alone, the port of the order and the
+//! vessel's own track. Without either it is accepted.
 
 use crate::berth_session::plan::READING_VALIDITY_S;
 use crate::firms::named_port;

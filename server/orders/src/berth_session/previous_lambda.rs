@@ -1,8 +1,8 @@
 //! Estimate of λ from the compass's last adjustment. One heading cannot separate λ from a change
 //! of the ship's magnetism along the needle.
 //!
-//! What always holds: it is calculated from the signed record. It is not used after work on the
-//! hull or at the compass.
+//! Invariants: it is calculated from the signed record. It is not used after work on the hull or
+//! at the compass.
 
 use crate::work_orders::payload::basis::PreviousBerth;
 use binnacle_adjustment::adjust::{

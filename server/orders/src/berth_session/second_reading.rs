@@ -1,7 +1,7 @@
 //! Judgement of a second reading, and the reading to replan from.
 //!
-//! What always holds: it is compared with the reported settings of the correctors, by the first
-//! reading and its model.
+//! Invariant: it is compared with the reported settings of the correctors, by the first reading
+//! and its model.
 
 use crate::berth_session::berth_reading::check;
 use crate::berth_session::plan_slots::CorrectorPlanSlots;

@@ -1,9 +1,9 @@
 //! Second reading of the magnetometer, after the steps: it confirms the correctors even if the
 //! compass cannot show them on the berth's heading.
 //!
-//! What always holds: the reading is optional, and its result is kept. One that confirms the plan
-//! updates the model and the residuals. One that does not blocks completion until the field is
-//! read as predicted, a plan is made from this reading, or other settings are reported.
+//! Invariants: the reading is optional, and its result is kept. One that confirms the plan updates
+//! the model and the residuals. One that does not blocks completion until the field is read as
+//! predicted, a plan is made from this reading, or other settings are reported.
 
 use crate::berth_session::berth_reading::check_reading_ranges;
 use crate::berth_session::plan::require_current_reading;

@@ -1,7 +1,7 @@
 //! Completion of an adjustment: its record and the consequences for server and vessel.
 //!
-//! What always holds: completion is one transaction. It writes the record, the revision of the
-//! binnacle, the entry in the logbook and the predicted model, or none of them.
+//! Invariants: completion is one transaction. It writes the record, the revision of the binnacle,
+//! the entry in the logbook and the predicted model, or none of them.
 
 use crate::completion::record;
 use crate::completion::record::VesselAndCompass;

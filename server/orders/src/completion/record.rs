@@ -1,7 +1,7 @@
 //! Adjustment record: everything that an inspector may need, as canonical JSON.
 //!
-//! What always holds: it is made once, at completion, and kept as that text; signatures cover its
-//! hash. It states that it is not a certificate.
+//! Invariants: it is made once, at completion, and kept as that text; signatures cover its hash.
+//! It states that it is not a certificate.
 
 use crate::completion::sign_off::SignOff;
 use crate::work_orders::events::OrderEvent;

@@ -1,6 +1,6 @@
 //! Messages between an operator and a firm about an order.
 //!
-//! What always holds: a message is an entry of the order's log; no other firm reads it.
+//! Invariants: a message is an entry of the order's log; no other firm reads it.
 
 use crate::dispatch::offer_requests::{checked_message, require_own_firm};
 use crate::work_orders::events::{MessageSent, OrderEvent};

@@ -1,7 +1,7 @@
 //! New port calls for orders without one, whose own was withdrawn or never known.
 //!
-//! What always holds: an order is linked to a call of its own port only, and only if its time
-//! lies in it. Parties that were notified of the lost call are notified of the new one.
+//! Invariants: an order is linked to a call of its own port only, and only if its time lies in it.
+//! Parties that were notified of the lost call are notified of the new one.
 
 use crate::dispatch::port_call_changes::CallUpdate;
 use crate::dispatch::{call_links, port_call_changes};

@@ -1,7 +1,7 @@
 //! Changes of a port call while an order is planned at it.
 //!
-//! What always holds: the operator and every firm with an open offer or the order are notified in
-//! the transaction of the change. The agreed time stands until both agree on another.
+//! Invariants: the operator and every firm with an open offer or the order are notified in the
+//! transaction of the change. The agreed time stands until both agree on another.
 
 use crate::dispatch::call_links;
 use crate::work_orders::events::{CallMoved, OrderEvent};

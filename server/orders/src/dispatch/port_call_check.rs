@@ -1,7 +1,7 @@
 //! Check of an order's time against the vessel's port calls.
 //!
-//! What always holds: an order that names a port is planned for a day on which the vessel is
-//! known to be there, unless neither a coming call there nor another port at that time is known.
+//! Invariant: an order that names a port is planned for a day on which the vessel is known to be
+//! there, unless neither a coming call there nor another port at that time is known.
 
 use crate::firms::named_port;
 use crate::work_orders::order_update::Change;

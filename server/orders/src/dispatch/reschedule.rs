@@ -1,9 +1,9 @@
 //! Rescheduling of an order that a firm has: the operator proposes a time, the firm accepts or
 //! declines.
 //!
-//! What always holds: the agreed time stands until the firm accepts. The new time lies in a call
-//! of the vessel at the order's port, long enough for a job, and on a day on which the firm has a
-//! team left. Both are checked at the proposal and at the acceptance.
+//! Invariants: the agreed time stands until the firm accepts. The new time lies in a call of the
+//! vessel at the order's port, long enough for a job, and on a day on which the firm has a team
+//! left. Both are checked at the proposal and at the acceptance.
 
 use crate::dispatch::offer_requests::{
     MAX_ANSWER_HOURS, OfferAnswer, checked_terms, require_capacity,

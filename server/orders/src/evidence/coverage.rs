@@ -1,7 +1,7 @@
 //! Coverage of a signature over the record's SHA-256: the record, what is made from it, and the
 //! log up to the entry it names.
 //!
-//! What always holds: a file without coverage is reported as such, or as a problem.
+//! Invariant: a file without coverage is reported as such, or as a problem.
 
 use super::archive::LogHead;
 use super::findings::Findings;

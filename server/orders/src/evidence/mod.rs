@@ -1,9 +1,9 @@
 //! Evidence of an adjustment: one archive that anyone can check.
 //!
-//! What always holds: the same state of an order gives the same bytes. The manifest names the
-//! SHA-256 of every other file, each log entry that of the one before, and the completion that of
-//! the record. Sheet and table are made from the record's text alone. [`verify()`] needs nothing
-//! but the archive itself.
+//! Invariants: the same state of an order gives the same bytes. The manifest names the SHA-256 of
+//! every other file, each log entry that of the one before, and the completion that of the record.
+//! Sheet and table are made from the record's text alone. [`verify()`] needs nothing but the
+//! archive itself.
 
 mod archive;
 mod coverage;

@@ -1,9 +1,9 @@
 //! Capacity of a firm: the vessels it visits on a day, by orders of all operators, and its teams.
 //!
-//! What always holds: a booking holds the firm's lock until the transaction ends, so that the
-//! last team is booked once. A team is in one port a day. An operator learns of others' orders
-//! only that no team is left; the firm sees its own. An operator offers no job at a time at which
-//! the firm does not work by the operator's terms. A firm without terms accepts any time.
+//! Invariants: a booking holds the firm's lock until the transaction ends, so that the last team
+//! is booked once. A team is in one port a day. An operator learns of others' orders only that no
+//! team is left; the firm sees its own. An operator offers no job at a time at which the firm does
+//! not work by the operator's terms. A firm without terms accepts any time.
 
 use super::store;
 use super::terms::Terms;

@@ -1,7 +1,7 @@
 //! Public keys with which a firm signs records.
 //!
-//! What always holds: whoever registers a key has proved possession of its private half. A key
-//! belongs to one firm. A revoked key vouches for nothing signed afterwards.
+//! Invariants: whoever registers a key has proved possession of its private half. A key belongs to
+//! one firm. A revoked key vouches for nothing signed afterwards.
 
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;

@@ -1,7 +1,7 @@
 //! Firms that adjust compasses, and the operators they work for.
 //!
-//! What always holds: an operator sees the firms that work for it, a firm sees itself, and a
-//! platform admin, who connects them, sees all.
+//! Invariant: an operator sees the firms that work for it, a firm sees itself, and a platform
+//! admin, who connects them, sees all.
 
 mod capacity;
 mod firm_api;

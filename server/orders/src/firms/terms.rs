@@ -1,7 +1,7 @@
 //! Terms of a firm for an operator: places, times, vessels and fees.
 //!
-//! What always holds: terms are the operator's own record of the firm, hidden from other
-//! operators. Terms without days or ports are stored, and reported as unusable.
+//! Invariants: terms are the operator's own record of the firm, hidden from other operators. Terms
+//! without days or ports are stored, and reported as unusable.
 
 use super::store;
 use axum::extract::{FromRef, State};

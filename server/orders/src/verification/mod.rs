@@ -1,8 +1,8 @@
 //! Verification at sea: settled headings since an adjustment, compared with its prediction.
 //!
-//! What always holds: a verdict is an entry of the order's log, written in the transaction of its
-//! analysis. An alarm is an alert as long as the order has failed. A passed verification is
-//! final: a later change of the ship ends the epoch instead.
+//! Invariants: a verdict is an entry of the order's log, written in the transaction of its
+//! analysis. An alarm is an alert as long as the order has failed. A passed verification is final:
+//! a later change of the ship ends the epoch instead.
 
 use crate::work_orders::events::OrderEvent;
 use crate::work_orders::log::entry::Author;

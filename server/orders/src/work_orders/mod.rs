@@ -1,6 +1,6 @@
 //! Work orders: the adjustment of one compass of one vessel at the berth, without a swing.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - An order is its log: entries that are never changed or removed, each with the hash of
 //!   the one before. The state follows from them, in the same transaction.

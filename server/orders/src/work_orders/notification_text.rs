@@ -1,7 +1,7 @@
 //! Notifications of an order's events, in words.
 //!
-//! What always holds: nobody is notified of their own action, except of a moved port call,
-//! which everybody is notified of. An exchange with one firm is shown to no other.
+//! Invariants: nobody is notified of their own action, except of a moved port call, which
+//! everybody is notified of. An exchange with one firm is shown to no other.
 
 use crate::work_orders::events::{Circumstances, Headline};
 use crate::work_orders::log::entry::Entry;

@@ -1,7 +1,7 @@
 //! Offers of an order to firms, as they follow from the log's entries.
 //!
-//! What always holds: at most one firm has accepted. Each open offer or proposal has a deadline;
-//! later answers do not count.
+//! Invariants: at most one firm has accepted. Each open offer or proposal has a deadline; later
+//! answers do not count.
 
 use crate::work_orders::payload::exchange::{Exchange, NamedFirm, Terms};
 use crate::work_orders::state::State;

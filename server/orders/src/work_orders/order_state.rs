@@ -1,7 +1,7 @@
 //! State of an order: the fold of the events in its log.
 //!
-//! What always holds: it is a function of the log alone, so that the state in the
-//! database can be derived second.
+//! Invariant: it is a function of the log alone, so that the state in the database can be derived
+//! again.
 
 use crate::work_orders::offers::Offers;
 use crate::work_orders::payload::chosen_plan::ChosenPlan;

@@ -1,6 +1,6 @@
 //! Change of an order, on its way into the database.
 //!
-//! What always holds: a change holds the order's lock until the transaction ends. The entry, its
+//! Invariants: a change holds the order's lock until the transaction ends. The entry, its
 //! consequences and the live events are that one transaction. The same request under the same key
 //! writes one entry.
 

@@ -1,7 +1,7 @@
 //! Publication of an order's changes: live events, webhooks and notifications for both sides.
 //!
-//! What always holds: all of it is written in the transaction of the change. A firm is informed
-//! of exchanges with the operator, and of everything else only while it has the order.
+//! Invariants: all of it is written in the transaction of the change. A firm is informed of
+//! exchanges with the operator, and of everything else only while it has the order.
 
 use crate::work_orders::events::Audience;
 use crate::work_orders::log::entry::Entry;

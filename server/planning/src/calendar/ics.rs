@@ -1,8 +1,8 @@
 //! Orders, port calls and due dates as iCalendar events (RFC 5545).
 //!
-//! What always holds: an event keeps its UID, and its SEQUENCE grows with the order's log, the
-//! call's revisions or the versions of the due date. Times are UTC and due dates are days. Equal
-//! records give equal bytes.
+//! Invariants: an event keeps its UID, and its SEQUENCE grows with the order's log, the call's
+//! revisions or the versions of the due date. Times are UTC and due dates are days. Equal records
+//! give equal bytes.
 
 use super::store::{CalendarCall, CalendarDueDate, CalendarOrder};
 use anyhow::Context;

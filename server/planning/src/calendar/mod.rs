@@ -1,8 +1,8 @@
 //! Calendar feeds of work orders, port calls and due dates (RFC 5545).
 //!
-//! What always holds: a feed's address is its secret, shown once and stored as a hash. The feed
-//! shows what its operator or firm sees now, and nothing once the feed or its creator is removed.
-//! Port calls and due dates are in the operator's feeds only.
+//! Invariants: a feed's address is its secret, shown once and stored as a hash. The feed shows
+//! what its operator or firm sees now, and nothing once the feed or its creator is removed. Port
+//! calls and due dates are in the operator's feeds only.
 
 mod feed;
 mod ics;

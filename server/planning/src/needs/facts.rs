@@ -243,7 +243,7 @@ fn predict_deviations(
             on,
             place: place.to_owned(),
             worst_deviation_deg: worst.deviation_deg.abs(),
-            side: Side::of(worst.deviation_deg),
+            side: Side::from_deviation(worst.deviation_deg),
         }));
     };
     add(day(now), HERE, here);

@@ -1,7 +1,7 @@
 //! Adjustment needs: due dates of compasses and their causes.
 //!
-//! What always holds: a need is computed on each request from stored data. Only the history of
-//! the deviation at the vessel's position is stored. The rules belong to `binnacle_schedule`.
+//! Invariants: a need is computed on each request from stored data. Only the history of the
+//! deviation at the vessel's position is stored. The rules belong to `binnacle_schedule`.
 
 mod facts;
 mod load;

@@ -4,7 +4,7 @@ use super::facts::Facts;
 use super::prediction::PredictedDeviation;
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_schedule::needs::{CauseKind, Due, Terms, Urgency, due};
-use binnacle_schedule::rules::{Read, Rule, built_in_rules};
+use binnacle_schedule::rules::{Provenance, Rule, built_in_rules};
 use chrono::{Datelike, NaiveDate};
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
@@ -137,7 +137,7 @@ fn find_citation(id: &str) -> Option<RuleCited> {
         id: rule.id.clone(),
         document: rule.citation.document.clone(),
         section: rule.citation.section.clone(),
-        second_hand: rule.citation.read == Read::SecondHand,
+        second_hand: rule.citation.read == Provenance::SecondHand,
     })
 }
 

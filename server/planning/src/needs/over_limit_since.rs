@@ -1,8 +1,7 @@
 //! Dates since which a compass's deviation at the vessel's position has exceeded each level.
 //!
-//! What always holds: an observation keeps a level and its date exactly if the deviation was at
-//! least that large at every observation since. A prediction that is too uncertain is no
-//! observation.
+//! Invariants: an observation keeps a level and its date exactly if the deviation was at least
+//! that large at every observation since. A prediction that is too uncertain is no observation.
 
 use binnacle_platform::db::{Db, Result, Tx, execute, rows};
 use binnacle_platform::ids::{CompassId, OperatorId, VesselId};

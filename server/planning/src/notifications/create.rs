@@ -1,11 +1,11 @@
 //! Creation of notifications from notices.
 //!
-//! What always holds: a notice becomes one notification for each person it concerns, in the
-//! transaction of the event itself. Each has the time at which mail is due, if any.
+//! Invariants: a notice becomes one notification for each person it concerns, in the transaction
+//! of the event itself. Each has the time at which mail is due, if any.
 
+use super::channel::Channel;
 use super::settings::Settings;
 use super::store;
-use super::way::Way;
 use binnacle_platform::db::{Tx, row, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::UserId;
@@ -38,7 +38,7 @@ pub(super) async fn notify(
             |notice: &&Notice| notice.kind.concerns(person.role) && author != Some(person.id);
         for notice in notices.iter().filter(concerns) {
             let way = person.settings.way(notice.kind, person.role);
-            if way == Way::Off {
+            if way == Channel::Off {
                 continue;
             }
             let mut mail_at = person.settings.mail_at(way, notice.urgent, now);

@@ -1,12 +1,13 @@
 //! Notifications for each person: list, mail and digest.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - A notification is stored in the transaction of its event. The author of the event gets none.
 //! - Mail waits for the end of a person's quiet hours, or for their digest. Urgent mail waits for
 //!   neither. Letters go through [`binnacle_platform::outbox`].
 //! - A person sees their own notifications only.
 
+mod channel;
 mod create;
 mod digest;
 mod needs;
@@ -14,7 +15,6 @@ mod notification;
 mod send;
 mod settings;
 mod store;
-mod way;
 
 pub use create::create_notifications;
 pub use needs::notify_of_needs;
@@ -31,6 +31,7 @@ use binnacle_platform::ids::NotificationId;
 use binnacle_platform::notices::Kind;
 use binnacle_platform::session::Role;
 use binnacle_platform::time::Time;
+use channel::Channel;
 use notification::{Filter, Notification};
 use serde::{Deserialize, Serialize};
 use settings::Settings;
@@ -38,7 +39,6 @@ use std::collections::BTreeMap;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
-use way::Way;
 
 /// Returns the routes of this part.
 pub fn router<S>() -> OpenApiRouter<S>
@@ -93,7 +93,7 @@ struct SettingsInForce {
     /// Your settings.
     settings: Settings,
     /// Every kind that concerns you, with its way of delivery.
-    ways: BTreeMap<Kind, Way>,
+    ways: BTreeMap<Kind, Channel>,
     /// Address for mail, with which you sign in.
     #[schema(example = "ada@example.com")]
     address: String,

@@ -1,8 +1,7 @@
 //! Notifications of compasses that are due soon, or sooner than before.
 //!
-//! What always holds: each step towards the due date is notified once, by the first process that
-//! finds it. A postponed date is recorded without a notification. Calendars show the recorded
-//! needs.
+//! Invariants: each step towards the due date is notified once, by the first process that finds
+//! it. A postponed date is recorded without a notification. Calendars show the recorded needs.
 
 use super::create::notify;
 use super::store::{self, RecordedNeed};

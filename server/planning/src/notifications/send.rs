@@ -1,7 +1,7 @@
 //! Mail of due notifications: a letter for a single one, a digest for several.
 //!
-//! What always holds: notifications are taken and their letter queued in one transaction, so that
-//! each is mailed once. Those read in the meantime are not mailed.
+//! Invariants: notifications are taken and their letter queued in one transaction, so that each is
+//! mailed once. Those read in the meantime are not mailed.
 
 use super::notification::Notification;
 use super::{digest, needs, store};

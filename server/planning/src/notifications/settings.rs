@@ -1,9 +1,8 @@
 //! Notification settings of a person: ways of delivery, quiet hours and digest.
 //!
-//! What always holds: times of day are in the person's own time zone, also when its clocks
-//! change.
+//! Invariant: times of day are in the person's own time zone, also when its clocks change.
 
-use super::way::Way;
+use super::channel::Channel;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::notices::Kind;
 use binnacle_platform::session::Role;
@@ -31,7 +30,7 @@ pub(super) struct Settings {
     pub(super) time_zone: Zone,
     /// Way of delivery for each kind; a kind that is left out has the default way.
     #[serde(default)]
-    pub(super) ways: BTreeMap<Kind, Way>,
+    pub(super) ways: BTreeMap<Kind, Channel>,
     /// Hours without mail, except for critical alerts. Mail is held until they end.
     #[serde(default)]
     #[schema(required)]
@@ -154,18 +153,18 @@ impl Settings {
     }
 
     /// Returns the way of delivery for a kind.
-    pub(super) fn way(&self, kind: Kind, role: Role) -> Way {
+    pub(super) fn way(&self, kind: Kind, role: Role) -> Channel {
         let chosen = self.ways.get(&kind).copied();
-        chosen.unwrap_or_else(|| Way::default_for(kind, role))
+        chosen.unwrap_or_else(|| Channel::default_for(kind, role))
     }
 
     /// Returns the time of the mail for an event that happens now; `None` for no mail.
-    pub(super) fn mail_at(&self, way: Way, urgent: bool, now: Time) -> Option<Time> {
+    pub(super) fn mail_at(&self, way: Channel, urgent: bool, now: Time) -> Option<Time> {
         match way {
-            Way::Mail | Way::Digest if urgent => Some(now),
-            Way::Mail => Some(self.after_quiet_hours(now)),
-            Way::Digest => Some(self.next_digest(now)),
-            Way::List | Way::Off => None,
+            Channel::Mail | Channel::Digest if urgent => Some(now),
+            Channel::Mail => Some(self.after_quiet_hours(now)),
+            Channel::Digest => Some(self.next_digest(now)),
+            Channel::List | Channel::Off => None,
         }
     }
 
@@ -262,14 +261,17 @@ mod tests {
             // The night in which clocks go forward is an hour shorter.
             ("2026-03-28T22:00:00Z", "2026-03-29T05:00:00Z"),
         ] {
-            let found = madrid.mail_at(Way::Mail, false, time(now));
+            let found = madrid.mail_at(Channel::Mail, false, time(now));
             assert_eq!(found, Some(time(then)), "{now}");
-            assert_eq!(madrid.mail_at(Way::Mail, true, time(now)), Some(time(now)));
+            assert_eq!(
+                madrid.mail_at(Channel::Mail, true, time(now)),
+                Some(time(now))
+            );
         }
         let noon = settings(json!({
             "time_zone": "Pacific/Auckland", "quiet_hours": { "from": "12:00", "to": "13:00" }
         }));
-        let found = noon.mail_at(Way::Mail, false, time("2026-11-20T23:30:00Z"));
+        let found = noon.mail_at(Channel::Mail, false, time("2026-11-20T23:30:00Z"));
         assert_eq!(found, Some(time("2026-11-21T00:00:00Z")));
     }
 

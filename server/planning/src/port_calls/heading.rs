@@ -1,6 +1,6 @@
 //! Heading of a vessel at a berth: given, read alongside, or learnt from earlier calls.
 //!
-//! What always holds: headings are learnt from calls of the operator's own fleet only.
+//! Invariant: headings are learnt from calls of the operator's own fleet only.
 
 use super::call::{CallBerthHeading, CallBerthHeadingSource, Content};
 use anyhow::Context;

@@ -1,6 +1,6 @@
 //! Port calls of vessels, with the uncertainty of their times.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - Calls of one vessel do not overlap, and none is entered after its end. A change of a vessel's
 //!   calls locks the vessel's row until the transaction ends.
@@ -150,7 +150,7 @@ async fn enter_port_call(
         }
         check_reference(&known, &call)?;
         check_overlap(&known, None, &call)?;
-        let author = Author::of(&mut tx, writer.user, now).await?;
+        let author = Author::from_user(&mut tx, writer.user, now).await?;
         store::insert(&mut tx, vessel, id, &call, Source::Api, &author).await?;
         let new = [(id, moves::alongside(&call))];
         let pending = attach_new_calls(&mut tx, vessel, &new, &author.name, now).await?;
@@ -210,7 +210,7 @@ async fn amend_port_call(
         return Ok(Json(find_call(&app, writer.operator, vessel, id).await?));
     }
     check_overlap(&known, Some(id), &amended)?;
-    let author = Author::of(&mut tx, writer.user, now).await?;
+    let author = Author::from_user(&mut tx, writer.user, now).await?;
     let moving = moves::amended(current, &amended)?;
     let mut pending =
         announce_call_updates(&mut tx, vessel, moving.as_slice(), &author.name, now).await?;
@@ -243,7 +243,7 @@ async fn withdraw_port_call(
     let current = known.iter().find(|row| row.id == id);
     let current = current.ok_or(Error::NotFound("port call"))?;
     if current.withdrawn_at.is_none() {
-        let author = Author::of(&mut tx, writer.user, now).await?;
+        let author = Author::from_user(&mut tx, writer.user, now).await?;
         let moving = [moves::withdrawn(current)?];
         let pending = announce_call_updates(&mut tx, vessel, &moving, &author.name, now).await?;
         store::withdraw(&mut tx, current, reason.as_deref(), &author).await?;

@@ -47,7 +47,7 @@ pub(super) struct Author {
 }
 
 impl Author {
-    pub(super) async fn of(tx: &mut Tx, id: UserId, at: Time) -> Result<Author> {
+    pub(super) async fn from_user(tx: &mut Tx, id: UserId, at: Time) -> Result<Author> {
         let name = session::name_of(tx, id).await?;
         Ok(Author { id, name, at })
     }

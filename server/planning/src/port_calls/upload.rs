@@ -234,7 +234,7 @@ async fn store_file(
     };
     let (mut changed, mut pending) = (Vec::new(), Vec::new());
     let mut tx = request.begin().await?;
-    let author = Author::of(&mut tx, writer.user, now).await?;
+    let author = Author::from_user(&mut tx, writer.user, now).await?;
     // In order of ids, so that concurrent files cannot deadlock.
     for (vessel, calls) in file.vessels {
         let known = store::lock(&mut tx, writer.operator, vessel).await?;

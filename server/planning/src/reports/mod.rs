@@ -1,7 +1,7 @@
 //! Reports of a fleet: due dates, deviations, completed jobs and savings.
 //!
-//! What always holds: JSON, CSV and PDF are made from one report and cannot differ. Each computed
-//! figure comes with its inputs, and unknown figures are marked.
+//! Invariants: JSON, CSV and PDF are made from one report and cannot differ. Each computed figure
+//! comes with its inputs, and unknown figures are marked.
 
 mod csv;
 mod layout;

@@ -1,7 +1,7 @@
 //! Monthly report by mail, after the end of each month.
 //!
-//! What always holds: the report of a month is made once, stored as mailed, and sent to those who
-//! were recipients before the month ended. A server that was down sends the last month's on return.
+//! Invariants: the report of a month is made once, stored as mailed, and sent to those who were
+//! recipients before the month ended. A server that was down sends the last month's on return.
 
 use super::csv::{self, Table};
 use super::load::load_report;

@@ -1,7 +1,6 @@
 //! `/reports/settings`: cost of a swing, and recipients of the monthly report.
 //!
-//! What always holds: each recipient is a receiver of the outbox, added and removed with the
-//! settings.
+//! Invariant: each recipient is a receiver of the outbox, added and removed with the settings.
 
 use axum::extract::{FromRef, State};
 use binnacle_platform::access::{Reader, Writer};

@@ -1,7 +1,7 @@
 //! Limit on concurrent solvers, each of which takes a core for seconds.
 //!
-//! What always holds: few plans are made at once, and one at a time for each operator. Repeated
-//! requests of an operator wait for each other and delay no other operator.
+//! Invariants: few plans are made at once, and one at a time for each operator. Repeated requests
+//! of an operator wait for each other and delay no other operator.
 
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::OperatorId;

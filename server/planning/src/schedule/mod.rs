@@ -1,7 +1,7 @@
 //! The fleet's schedule: firm, port call and day of each adjustment, updated as ETAs, needs and
 //! orders change.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - A plan is stored with its whole input, so that the command line reproduces it to the byte.
 //!   The highest version is current.

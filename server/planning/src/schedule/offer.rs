@@ -1,8 +1,8 @@
 //! `/schedule/offer`: work orders for a planned job, offered to its firm.
 //!
-//! What always holds: a compass has one order under way at a time. A firm gets no more jobs on a
-//! day than it has teams for. A job is offered whole or not at all, and the fees of its orders add
-//! up to the job's fee in the plan.
+//! Invariants: a compass has one order under way at a time. A firm gets no more jobs on a day than
+//! it has teams for. A job is offered whole or not at all, and the fees of its orders add up to
+//! the job's fee in the plan.
 
 use super::plan::{Job, Plan};
 use super::store;

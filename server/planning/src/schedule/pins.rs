@@ -1,8 +1,8 @@
 //! `/schedule/pins`: jobs that a person has fixed.
 //!
-//! What always holds: a pin names a call of the compass's own vessel, a firm that the operator plans
-//! with and a day of the call. It moves only for cause, like a confirmed job, and the plan states
-//! the cause.
+//! Invariants: a pin names a call of the compass's own vessel, a firm that the operator plans with
+//! and a day of the call. It moves only for cause, like a confirmed job, and the plan states the
+//! cause.
 
 use crate::port_calls;
 use axum::extract::{FromRef, State};

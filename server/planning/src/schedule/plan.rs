@@ -5,7 +5,7 @@ use binnacle_platform::time::Time;
 use binnacle_schedule::calls::BerthHeading;
 use binnacle_schedule::input::JobState;
 use binnacle_schedule::needs::Urgency;
-use binnacle_schedule::plan::{ChangeKind, Weighed};
+use binnacle_schedule::plan::{ChangeKind, CostedOption};
 use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -135,7 +135,7 @@ pub struct Job {
     /// Share of the team's travel, euros.
     pub travel_eur: f64,
     /// Other terms of the cost.
-    pub weighed: Weighed,
+    pub weighed: CostedOption,
 }
 
 /// Need that could not be scheduled, or only late.

@@ -1,7 +1,7 @@
 //! Making of a plan: input loaded, solved on a blocking thread without a transaction, stored.
 //!
-//! What always holds: a plan is stored as the next version after the one in its input, or not at
-//! all. Of two concurrent solvers the second loads and solves again.
+//! Invariants: a plan is stored as the next version after the one in its input, or not at all. Of
+//! two concurrent solvers the second loads and solves again.
 
 use super::at_risk::{add_orders_beside_plan, find_jobs_at_risk};
 use super::concurrency::{PlanLock, PlanSlots};

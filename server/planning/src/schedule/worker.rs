@@ -1,6 +1,6 @@
 //! Worker that makes new schedules after changes.
 //!
-//! What always holds: one process at a time makes an operator's schedule, under a lease. A burst of
+//! Invariants: one process at a time makes an operator's schedule, under a lease. A burst of
 //! changes makes one schedule, half a minute after the first. No plan is older than a day.
 
 use super::concurrency::PlanSlots;

@@ -30,7 +30,7 @@ pub(crate) struct NoResponse(anyhow::Error);
 
 impl Http {
     /// Creates the client for the provider with this address.
-    pub(super) async fn of(issuer: &str) -> anyhow::Result<Http> {
+    pub(super) async fn for_issuer(issuer: &str) -> anyhow::Result<Http> {
         let url = Url::parse(issuer).context("the issuer is not a URL")?;
         let host = url.host_str().context("the issuer has no host")?;
         let host = host.trim_start_matches('[').trim_end_matches(']');

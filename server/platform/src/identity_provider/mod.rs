@@ -97,7 +97,7 @@ impl Provider {
 }
 
 async fn discover(issuer: &str) -> anyhow::Result<Discovery> {
-    let http = Http::of(issuer).await?;
+    let http = Http::for_issuer(issuer).await?;
     let issuer = IssuerUrl::new(issuer.to_owned())?;
     let metadata = CoreProviderMetadata::discover_async(issuer, &http).await?;
     metadata

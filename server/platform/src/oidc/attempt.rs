@@ -31,7 +31,7 @@ impl Attempt {
     }
 
     /// Reads the attempt from a request's cookie, if it is not too old.
-    pub(super) fn of(app: &App, headers: &HeaderMap) -> Option<Attempt> {
+    pub(super) fn from_headers(app: &App, headers: &HeaderMap) -> Option<Attempt> {
         let cookie = cookie::value(headers, name(&app.config))?;
         // The time is authentic: another time would give another state.
         let begun_s: i64 = cookie.split_once('.')?.0.parse().ok()?;

@@ -3,7 +3,7 @@
 use super::attempt::{self, Attempt};
 use super::claims::{self, Identity};
 use super::refusal::Refusal;
-use super::store::{self, Known};
+use super::store::{self, BoundUser};
 use crate::app::App;
 use crate::audit::RequestContext;
 use crate::client_address::Origin;
@@ -145,7 +145,7 @@ async fn send_code(
     Valid(sent): Valid<Code>,
 ) -> Result<(HeaderMap, Json<User>)> {
     const OVER: Error = Error::Gone("this sign-in took too long; start again");
-    let attempt = Attempt::of(&app, &headers).ok_or(OVER)?;
+    let attempt = Attempt::from_headers(&app, &headers).ok_or(OVER)?;
     let (state, now) = (attempt.state_hash(), app.clock.now());
     let user = store::awaited(&app.db, &state, now.into()).await?;
     let user = user.ok_or(OVER)?;
@@ -184,7 +184,7 @@ async fn conclude(
     headers: &HeaderMap,
     query: CallbackQuery,
 ) -> Concluded {
-    let attempt = Attempt::of(app, headers).ok_or(Refusal::Over)?;
+    let attempt = Attempt::from_headers(app, headers).ok_or(Refusal::Over)?;
     // Hashes are compared, so that the timing does not reveal how much is right.
     let state = query.state.unwrap_or_default();
     if secret::hash(&state) != attempt.state_hash() {
@@ -233,9 +233,9 @@ async fn identify(
     if subject.chars().any(char::is_control) {
         return Err(Refusal::Untrusted);
     }
-    let user = match store::find_known(&app.db, issuer, subject).await? {
-        Some(Known::User(user)) => *user,
-        Some(Known::Disabled) => return Err(Refusal::Unknown),
+    let user = match store::find_bound_user(&app.db, issuer, subject).await? {
+        Some(BoundUser::User(user)) => *user,
+        Some(BoundUser::Disabled) => return Err(Refusal::Unknown),
         None => return bind_first_sign_in(app, request, issuer, &identity).await,
     };
     request.record_actor(&user);
@@ -265,8 +265,8 @@ async fn bind_first_sign_in(
     }
     drop(tx);
     // The same person may have signed in through two windows at once.
-    match store::find_known(&app.db, issuer, subject).await? {
-        Some(Known::User(known)) if known.user_id == user.user_id => {
+    match store::find_bound_user(&app.db, issuer, subject).await? {
+        Some(BoundUser::User(known)) if known.user_id == user.user_id => {
             request.record_actor(&user);
             Ok(user)
         }

@@ -7,7 +7,11 @@ use crate::session::{User, user_sql};
 use crate::time::Time;
 
 /// Returns the user who is bound to a subject of the provider.
-pub(super) async fn find_known(db: &Db, issuer: &str, subject: &str) -> Result<Option<Known>> {
+pub(super) async fn find_bound_user(
+    db: &Db,
+    issuer: &str,
+    subject: &str,
+) -> Result<Option<BoundUser>> {
     let known = row!(
         db,
         (UserId,),
@@ -19,13 +23,13 @@ pub(super) async fn find_known(db: &Db, issuer: &str, subject: &str) -> Result<O
         return Ok(None);
     };
     Ok(Some(match find_user(db, id).await? {
-        Some(user) => Known::User(Box::new(user)),
-        None => Known::Disabled,
+        Some(user) => BoundUser::User(Box::new(user)),
+        None => BoundUser::Disabled,
     }))
 }
 
 /// User who is bound to a subject of the provider.
-pub(super) enum Known {
+pub(super) enum BoundUser {
     /// User who may sign in.
     User(Box<User>),
     /// User who is disabled.

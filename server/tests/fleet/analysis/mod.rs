@@ -214,7 +214,7 @@ async fn changed_settings_make_a_new_version_and_reach_the_ship(server: TestServ
     settings["analysis"]["gyro_speed_error"] = json!("uncorrected");
     let put = |body: Value| {
         let request = ada.request(reqwest::Method::PUT, &nao.path("/settings"));
-        binnacle_server_testing::ApiResponse::of(request.json(&body))
+        binnacle_server_testing::ApiResponse::send(request.json(&body))
     };
     assert_eq!(put(settings.clone()).await.good()["agent"]["version"], 1);
     assert_eq!(nao.downlink("").await["settings"]["min_sog_kn"], 6.0);

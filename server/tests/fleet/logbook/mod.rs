@@ -234,7 +234,7 @@ async fn a_report_repeated_under_its_key_is_one_entry(server: TestServer) {
     let report = async |note: &str| {
         let request = ada.request(Method::POST, &nao.path("/logbook"));
         let body = json!({ "kind": "shock", "from": DAY, "note": note });
-        ApiResponse::of(request.header("idempotency-key", "k").json(&body)).await
+        ApiResponse::send(request.header("idempotency-key", "k").json(&body)).await
     };
     let (first, repeated) = (report("aground").await, report("aground").await);
     assert_eq!((first.status, repeated.status), (201, 201));

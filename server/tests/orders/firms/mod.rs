@@ -45,14 +45,14 @@ async fn a_platform_admin_engages_a_firm_for_an_operator(server: TestServer) {
         firm["id"].as_str().unwrap()
     );
     for _ in 0..2 {
-        let engaged = ApiResponse::of(root.request(Method::PUT, &between)).await;
+        let engaged = ApiResponse::send(root.request(Method::PUT, &between)).await;
         assert_eq!(engaged.status, 204, "{engaged:?}");
     }
     assert_eq!(names(&ada.get("/firms").await.good()), ["Nervión Compass"]);
-    let dismissed = ApiResponse::of(root.request(Method::DELETE, &between)).await;
+    let dismissed = ApiResponse::send(root.request(Method::DELETE, &between)).await;
     assert_eq!(dismissed.status, 204, "{dismissed:?}");
     assert_eq!(names(&ada.get("/firms").await.good()), [""; 0]);
-    let repeated = ApiResponse::of(root.request(Method::DELETE, &between)).await;
+    let repeated = ApiResponse::send(root.request(Method::DELETE, &between)).await;
     assert_eq!(repeated.problem(), "not-found");
     server.finish().await;
 }
@@ -62,7 +62,7 @@ async fn a_firm_with_an_open_order_cannot_be_disengaged(server: TestServer) {
     let root = parties.ada.platform_admin(&server).await;
     let part = async |firm: FirmId| {
         let between = format!("/operators/{}/firms/{firm}", parties.ada.operator);
-        ApiResponse::of(root.request(Method::DELETE, &between)).await
+        ApiResponse::send(root.request(Method::DELETE, &between)).await
     };
     let [(offered, rosa), (waiting, _)] = &parties.firms[..] else {
         unreachable!("there are two")
@@ -119,8 +119,8 @@ async fn only_a_platform_admin_manages_operators_and_firms(server: TestServer) {
             person.get(&format!("/operators/{}", ada.operator)).await,
             person.post("/operators", &new).await,
             person.post("/firms", &new).await,
-            ApiResponse::of(person.request(Method::PUT, &between)).await,
-            ApiResponse::of(person.request(Method::DELETE, &between)).await,
+            ApiResponse::send(person.request(Method::PUT, &between)).await,
+            ApiResponse::send(person.request(Method::DELETE, &between)).await,
         ];
         for response in refused {
             assert_eq!(response.problem(), "forbidden");
@@ -134,7 +134,7 @@ async fn only_a_platform_admin_manages_operators_and_firms(server: TestServer) {
         format!("/operators/{firm}/firms/{firm}"),
         format!("/operators/{0}/firms/{0}", ada.operator),
     ] {
-        let response = ApiResponse::of(root.request(Method::PUT, &nobody)).await;
+        let response = ApiResponse::send(root.request(Method::PUT, &nobody)).await;
         assert_eq!(response.problem(), "not-found", "{nobody}");
     }
     server.finish().await;
@@ -165,7 +165,7 @@ async fn a_firm_repeated_under_its_key_is_created_once(server: TestServer) {
     let mut ids = Vec::new();
     for _ in 0..2 {
         let request = root.request(Method::POST, "/firms").json(&new);
-        let made = ApiResponse::of(request.header("Idempotency-Key", "1")).await;
+        let made = ApiResponse::send(request.header("Idempotency-Key", "1")).await;
         ids.push(made.good()["id"].clone());
     }
     assert_eq!(ids[0], ids[1]);
@@ -201,9 +201,9 @@ async fn a_read_token_cannot_create_a_firm(server: TestServer) {
         let request = server.http.request(method, &url);
         request.bearer_auth(token.as_str().unwrap())
     };
-    assert_eq!(ApiResponse::of(request(Method::GET)).await.status, 200);
+    assert_eq!(ApiResponse::send(request(Method::GET)).await.status, 200);
     let new = request(Method::POST).json(&json!({ "name": "Other" }));
-    assert_eq!(ApiResponse::of(new).await.problem(), "forbidden");
+    assert_eq!(ApiResponse::send(new).await.problem(), "forbidden");
     server.finish().await;
 }
 

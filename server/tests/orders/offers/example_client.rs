@@ -33,7 +33,7 @@ struct Client<'a> {
 }
 
 impl<'a> Client<'a> {
-    async fn of(server: &TestServer, person: &Person, folder: &'a Path) -> Client<'a> {
+    async fn with_token(server: &TestServer, person: &Person, folder: &'a Path) -> Client<'a> {
         let token = json!({ "name": "office", "scope": "write" });
         let made = person.post("/tokens", &token).await.good();
         Client {
@@ -73,7 +73,7 @@ impl<'a> Client<'a> {
 async fn the_example_client_asks_for_the_compass_reading_before_the_first_step(server: TestServer) {
     let (job, rosa) = offered(&server).await;
     let folder = tempfile::tempdir().unwrap();
-    let client = Client::of(&server, &rosa, folder.path()).await;
+    let client = Client::with_token(&server, &rosa, folder.path()).await;
     let order = job.order.as_str();
     client.good(&[&["accept", order], &WHO[..]].concat()).await;
     client.good(&["on-board", order]).await;
@@ -118,7 +118,7 @@ async fn the_example_client_completes_an_order(server: TestServer) {
     let (job, rosa) = offered(&server).await;
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let client = Client::of(&server, &rosa, folder).await;
+    let client = Client::with_token(&server, &rosa, folder).await;
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&rosa, &url, &["order.completed"]).await;
     let order = job.order.as_str();
@@ -206,13 +206,13 @@ async fn the_example_client_negotiates_sends_messages_and_gets_events(server: Te
     let terms = json!({ "fee_eur": 1800, "working_days": ["Sun"] });
     let path = format!("/firms/{firm}/terms");
     let put = parties.ada.request(Method::PUT, &path).json(&terms);
-    ApiResponse::of(put).await.good();
+    ApiResponse::send(put).await.good();
     parties
         .post(&parties.ada, "/offer", &parties.offer())
         .await
         .good();
     let folder = tempfile::tempdir().unwrap();
-    let client = Client::of(&server, rosa, folder.path()).await;
+    let client = Client::with_token(&server, rosa, folder.path()).await;
     let order = parties.order.as_str();
     let offered = client.good(&["order", order]).await;
     assert!(offered.contains("offered at 1800.00 euros"), "{offered}");
@@ -260,7 +260,7 @@ async fn a_firm_can_read_ship_data_only_while_the_order_is_open(server: TestServ
     }
     let post = |rest: &str, body: Value| {
         let request = rosa.request(Method::POST, &job.path(rest)).json(&body);
-        ApiResponse::of(request)
+        ApiResponse::send(request)
     };
     let early = post("/berth-reading", reading()).await;
     assert_eq!(early.problem(), "wrong-state");
@@ -346,16 +346,16 @@ async fn a_key_needs_proof_of_possession_and_signs_until_revoked(server: TestSer
     assert_eq!(seen["items"][0]["public_key"], public_key.as_str());
     let id = made.good()["id"].clone();
     let revoke = format!("{path}/{}", id.as_str().unwrap());
-    let foreign = ApiResponse::of(other.request(Method::DELETE, &revoke)).await;
+    let foreign = ApiResponse::send(other.request(Method::DELETE, &revoke)).await;
     assert_eq!(foreign.problem(), "not-found");
     assert_eq!(
-        ApiResponse::of(rosa.request(Method::DELETE, &revoke))
+        ApiResponse::send(rosa.request(Method::DELETE, &revoke))
             .await
             .status,
         204
     );
     assert_eq!(
-        ApiResponse::of(rosa.request(Method::DELETE, &revoke))
+        ApiResponse::send(rosa.request(Method::DELETE, &revoke))
             .await
             .status,
         404

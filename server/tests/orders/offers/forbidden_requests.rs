@@ -176,7 +176,7 @@ async fn a_read_token_cannot_respond_to_an_offer(server: TestServer) {
     let request = |token: &Value, method: Method, rest: &str| {
         let url = format!("{}/api/v1{}", server.url, parties.path(rest));
         let request = server.http.request(method, url);
-        ApiResponse::of(request.bearer_auth(token.as_str().unwrap()))
+        ApiResponse::send(request.bearer_auth(token.as_str().unwrap()))
     };
     assert_eq!(
         request(&read, Method::GET, "").await.good()["state"],

@@ -186,7 +186,7 @@ async fn a_firm_with_a_longer_lead_time_is_skipped(server: TestServer) {
         let terms = json!({ "fee_eur": 1800, "working_days": ["Sun"], "lead_time_h": hours });
         let path = format!("/firms/{firm}/terms");
         let put = parties.ada.request(Method::PUT, &path).json(&terms);
-        ApiResponse::of(put).await.good();
+        ApiResponse::send(put).await.good();
     }
     let mut offer = parties.offer();
     offer["answer_within_hours"] = json!(48);
@@ -366,11 +366,11 @@ async fn an_invalid_offer_is_refused_whole(server: TestServer) {
     assert_eq!(orders["items"].as_array().unwrap().len(), 1);
     new["offer"] = json!({ "firms": [rosas] });
     let request = || parties.ada.request(Method::POST, "/work-orders").json(&new);
-    let made = ApiResponse::of(request().header("Idempotency-Key", "1"))
+    let made = ApiResponse::send(request().header("Idempotency-Key", "1"))
         .await
         .good();
     assert_eq!(made["state"], "offered");
-    let repeated = ApiResponse::of(request().header("Idempotency-Key", "1"))
+    let repeated = ApiResponse::send(request().header("Idempotency-Key", "1"))
         .await
         .good();
     assert_eq!(made["id"], repeated["id"]);

@@ -24,7 +24,7 @@ async fn a_request_repeated_under_its_key_writes_one_entry(server: TestServer) {
     let job = Job::begin(&server).await;
     let send = |rest: &str, body: Value, key: &str| {
         let request = job.person.request(Method::POST, &job.path(rest));
-        ApiResponse::of(request.header("idempotency-key", key).json(&body))
+        ApiResponse::send(request.header("idempotency-key", key).json(&body))
     };
     let mut bad = reading();
     bad["unit"] = json!("nanotesla");
@@ -71,18 +71,18 @@ async fn a_request_delayed_for_days_is_written_once(server: TestServer) {
             request.header("idempotency-key", key)
         };
         let remark = send("/remarks", "remark").json(&json!({ "text": "crane alongside" }));
-        ApiResponse::of(remark).await.good();
+        ApiResponse::send(remark).await.good();
         let picture = send("/photos", "photo").body(photo.clone());
-        ApiResponse::of(picture).await.good();
+        ApiResponse::send(picture).await.good();
         let other = send("/remarks", "remark").json(&json!({ "text": "no crane" }));
         assert_eq!(
-            ApiResponse::of(other).await.problem(),
+            ApiResponse::send(other).await.problem(),
             "idempotency-key-reused"
         );
         // Other requests meanwhile have keys of their own.
         let another = send("/remarks", &format!("after {days}"));
         let another = another.json(&json!({ "text": "crane gone" }));
-        ApiResponse::of(another).await.good();
+        ApiResponse::send(another).await.good();
     }
     let log = job.person.get(&job.path("/entries")).await.good();
     let lines = log["items"].as_array().unwrap().iter();

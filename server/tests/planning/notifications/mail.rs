@@ -231,7 +231,7 @@ async fn a_removed_person_gets_no_more_letters(server: TestServer) {
     send_due(&server.app).await.unwrap();
     let id = viewer.get("/me").await.good()["user_id"].clone();
     let path = format!("/users/{}", id.as_str().unwrap());
-    let removed = ApiResponse::of(parties.ada.request(Method::DELETE, &path)).await;
+    let removed = ApiResponse::send(parties.ada.request(Method::DELETE, &path)).await;
     assert_eq!(removed.status, 204, "{removed:?}");
     deliver(&server, &relay).await;
     let to: Vec<_> = relay

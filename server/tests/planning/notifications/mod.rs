@@ -40,7 +40,7 @@ async fn sent_subjects(server: &TestServer, relay: &Relay) -> Vec<String> {
 
 async fn put_settings(person: &Person, settings: &Value) -> ApiResponse {
     let request = person.request(Method::PUT, "/me/notifications");
-    ApiResponse::of(request.json(settings)).await
+    ApiResponse::send(request.json(settings)).await
 }
 
 async fn an_offer_and_its_responses_notify_the_other_side(server: TestServer) {
@@ -184,7 +184,7 @@ async fn reading_marks_only_ones_own_notifications(server: TestServer) {
     let path = format!("/notifications/{first}");
     let mark = |who: &Person, read: bool| {
         let request = who.request(Method::PATCH, &path);
-        ApiResponse::of(request.json(&json!({ "read": read })))
+        ApiResponse::send(request.json(&json!({ "read": read })))
     };
     assert_eq!(mark(rosa, true).await.problem(), "not-found");
     assert_eq!(mark(ada, true).await.status, 204);

@@ -74,7 +74,7 @@ async fn a_read_token_cannot_change_settings(server: TestServer) {
     let url = format!("{}/api/v1/me/notifications", server.url);
     for (method, status) in [(Method::GET, 200), (Method::PUT, 403)] {
         let request = server.http.request(method, &url).json(&json!({}));
-        let response = ApiResponse::of(request.bearer_auth(token.as_str().unwrap())).await;
+        let response = ApiResponse::send(request.bearer_auth(token.as_str().unwrap())).await;
         assert_eq!(response.status, status, "{response:?}");
     }
     server.finish().await;

@@ -24,7 +24,7 @@ const HEADER: &str = "id,port,eta,etd,berth\n";
 
 async fn import(person: &Person, path: &str, text: impl Into<String>) -> ApiResponse {
     let request = person.request(Method::POST, path).body(text.into());
-    ApiResponse::of(request.header("content-type", "text/csv")).await
+    ApiResponse::send(request.header("content-type", "text/csv")).await
 }
 
 fn import_counts(created: u32, amended: u32, unchanged: u32, withdrawn: u32, over: u32) -> Value {

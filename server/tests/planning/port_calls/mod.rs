@@ -158,7 +158,7 @@ async fn a_port_call_repeated_under_its_key_is_stored_once(server: TestServer) {
             .header("idempotency-key", "k")
             .json(&call("NLRTM", 8));
         ids.push(
-            binnacle_server_testing::ApiResponse::of(request)
+            binnacle_server_testing::ApiResponse::send(request)
                 .await
                 .good()["id"]
                 .clone(),

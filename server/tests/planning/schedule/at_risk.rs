@@ -51,7 +51,7 @@ async fn an_agreed_job_at_risk_stays_so_without_its_firm(server: TestServer) {
     solve(ada).await;
     let path = format!("/firms/{}/terms", agreed.firm);
     let left_out = async || {
-        ApiResponse::of(ada.request(Method::DELETE, &path)).await;
+        ApiResponse::send(ada.request(Method::DELETE, &path)).await;
         let plan = solve(ada).await;
         assert_eq!(plan["under_way"].as_array().unwrap().len(), 1, "{plan}");
         alerts(ada).await

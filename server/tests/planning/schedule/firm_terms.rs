@@ -69,13 +69,13 @@ async fn terms_belong_to_one_operator(server: TestServer) {
     let path = format!("/firms/{id}/terms");
     assert_eq!(put(&eve, &path, &terms()).await.problem(), "not-found");
     let delete = |person: &binnacle_server_testing::Person| person.request(Method::DELETE, &path);
-    let theirs = ApiResponse::of(delete(&eve)).await;
+    let theirs = ApiResponse::send(delete(&eve)).await;
     assert_eq!(theirs.problem(), "not-found");
     assert_eq!(eve.get("/firm-terms").await.good()["items"], json!([]));
     let viewer = ada.viewer(&server).await;
     assert_eq!(put(&viewer, &path, &terms()).await.problem(), "forbidden");
-    assert_eq!(ApiResponse::of(delete(&ada)).await.status, 204);
-    assert_eq!(ApiResponse::of(delete(&ada)).await.problem(), "not-found");
+    assert_eq!(ApiResponse::send(delete(&ada)).await.status, 204);
+    assert_eq!(ApiResponse::send(delete(&ada)).await.problem(), "not-found");
     server.finish().await;
 }
 

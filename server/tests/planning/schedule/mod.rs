@@ -44,7 +44,7 @@ pub(crate) fn terms() -> Value {
 }
 
 pub(crate) async fn put(person: &Person, path: &str, body: &Value) -> ApiResponse {
-    ApiResponse::of(person.request(Method::PUT, path).json(body)).await
+    ApiResponse::send(person.request(Method::PUT, path).json(body)).await
 }
 
 /// Creates a firm with terms.

@@ -107,7 +107,7 @@ async fn port_calls_moved_by_a_file_are_reported_like_those_by_a_request(server:
     let agreed = AgreedJob::new(&server).await;
     let post = |path: String, kind: &'static str, text: String| {
         let request = agreed.ada.request(Method::POST, &path).body(text);
-        ApiResponse::of(request.header("content-type", kind))
+        ApiResponse::send(request.header("content-type", kind))
     };
     let calls = port_calls::path(&agreed.nao);
     let csv = "id,port,eta,etd\nNLRTM 2026-12-14T06:00:00Z,NLRTM,2026-12-16T06:00:00Z,2026-12-17T18:00:00Z\n";

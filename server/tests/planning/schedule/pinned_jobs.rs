@@ -38,10 +38,10 @@ async fn a_pinned_job_stays_until_it_is_unpinned(server: TestServer) {
     assert_eq!(list["items"][0], kept);
     let path = format!("/schedule/pins/{}", compass_of(&nao));
     let eve = server.admin("eve").await;
-    let theirs = ApiResponse::of(eve.request(Method::DELETE, &path)).await;
+    let theirs = ApiResponse::send(eve.request(Method::DELETE, &path)).await;
     assert_eq!(theirs.problem(), "not-found");
     assert_eq!(eve.get("/schedule/pins").await.good()["items"], json!([]));
-    let gone = ApiResponse::of(ada.request(Method::DELETE, &path)).await;
+    let gone = ApiResponse::send(ada.request(Method::DELETE, &path)).await;
     assert_eq!(gone.status, 204);
     let made = solve(&ada).await;
     assert_eq!(first_job(&made), ("NLRTM", "2026-12-09", "Maas Compass"));

@@ -73,7 +73,7 @@ async fn a_port_call_entered_again_has_its_agreed_job_again(server: TestServer) 
             .ada
             .request(Method::POST, &path)
             .body(text.to_owned());
-        ApiResponse::of(request.header("content-type", "text/csv"))
+        ApiResponse::send(request.header("content-type", "text/csv"))
             .await
             .good()
     };

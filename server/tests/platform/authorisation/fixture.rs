@@ -283,7 +283,7 @@ async fn create_order_objects(
     adjuster.post(&format!("{order}/accept"), &yes).await.good();
     let photos = format!("{order}/photos?caption=trays");
     let photo = admin.request(Method::POST, &photos).body(PICTURE);
-    let photo = ApiResponse::of(photo).await.good();
+    let photo = ApiResponse::send(photo).await.good();
     let mut all = ids.clone();
     all.insert("firm", firm.to_string());
     admin.post("/schedule/pins", &pin(&all)).await.good();

@@ -207,7 +207,7 @@ async fn a_recipient_is_added_once_changed_and_removed(server: TestServer) {
     let new = json!({ "address": "Bridge@Example.com" });
     let twice = || {
         let request = ada.request(Method::POST, "/mail-recipients").json(&new);
-        ApiResponse::of(request.header("idempotency-key", "one"))
+        ApiResponse::send(request.header("idempotency-key", "one"))
     };
     let made = twice().await.good();
     assert_eq!(twice().await.good(), made);
@@ -234,15 +234,15 @@ async fn a_recipient_is_added_once_changed_and_removed(server: TestServer) {
     }
     let change = json!({ "severity": "critical" });
     let request = ada.request(Method::PUT, &path(&made, "")).json(&change);
-    let changed = ApiResponse::of(request).await.good();
+    let changed = ApiResponse::send(request).await.good();
     assert_eq!(changed["severity"], "critical");
     let viewer = ada.viewer(&server).await;
     assert_eq!(viewer.get("/mail-recipients").await.status, 200);
     for (method, rest) in [(Method::DELETE, ""), (Method::POST, "/test")] {
-        let refused = ApiResponse::of(viewer.request(method, &path(&made, rest))).await;
+        let refused = ApiResponse::send(viewer.request(method, &path(&made, rest))).await;
         assert_eq!(refused.problem(), "forbidden");
     }
-    let removed = ApiResponse::of(ada.request(Method::DELETE, &path(&made, ""))).await;
+    let removed = ApiResponse::send(ada.request(Method::DELETE, &path(&made, ""))).await;
     assert_eq!(removed.status, 204);
     assert_eq!(ada.get(&path(&made, "")).await.problem(), "not-found");
     server.finish().await;
@@ -266,12 +266,12 @@ async fn another_operators_recipients_are_not_found(server: TestServer) {
         let request = eve
             .request(method.clone(), &path(&bridge, rest))
             .json(&change);
-        let response = ApiResponse::of(request).await;
+        let response = ApiResponse::send(request).await;
         assert_eq!(response.problem(), "not-found", "{method} {rest}");
     }
     // A webhook's path does not find a recipient.
     let webhook = format!("/webhooks/{}", bridge["id"].as_str().unwrap());
-    let removed = ApiResponse::of(ada.request(Method::DELETE, &webhook)).await;
+    let removed = ApiResponse::send(ada.request(Method::DELETE, &webhook)).await;
     assert_eq!(removed.problem(), "not-found");
     assert_eq!(eve.get("/mail-recipients").await.good()["items"], json!([]));
     server.finish().await;

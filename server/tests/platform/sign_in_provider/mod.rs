@@ -80,7 +80,7 @@ impl Fixture {
 
 async fn get(server: &TestServer, path: &str, cookie: &str) -> ApiResponse {
     let url = format!("{}{path}", server.url);
-    ApiResponse::of(server.http.get(url).header("cookie", cookie)).await
+    ApiResponse::send(server.http.get(url).header("cookie", cookie)).await
 }
 
 async fn with_cookie(server: &TestServer, path: &str, cookie: &str) -> ApiResponse {
@@ -117,7 +117,7 @@ async fn start_sign_in(server: &TestServer) -> (String, String) {
 
 /// Follows the address at the provider; returns the callback address.
 async fn callback_address(server: &TestServer, address: &str) -> String {
-    let response = ApiResponse::of(server.http.get(address)).await;
+    let response = ApiResponse::send(server.http.get(address)).await;
     let back = redirect_target(&response);
     back.strip_prefix(PUBLIC).unwrap().to_owned()
 }
@@ -129,7 +129,7 @@ async fn follow_callback(server: &TestServer, back: &str, cookie: &str) -> ApiRe
 async fn send_code(server: &TestServer, cookie: &str, code: &str) -> ApiResponse {
     let url = format!("{}/api/v1/session/provider/code", server.url);
     let request = server.http.post(url).header("cookie", cookie);
-    ApiResponse::of(request.json(&json!({ "code": code }))).await
+    ApiResponse::send(request.json(&json!({ "code": code }))).await
 }
 
 async fn a_person_verified_by_the_provider_is_signed_in(fixture: Fixture) {
@@ -144,7 +144,7 @@ async fn a_person_verified_by_the_provider_is_signed_in(fixture: Fixture) {
     assert_eq!(sessions["items"][1]["provider"], "Example Lines");
     let url = format!("{}/api/v1/session", fixture.server.url);
     let out = fixture.server.http.delete(url).header("cookie", &cookie);
-    let out = ApiResponse::of(out.header("x-binnacle-request", "1")).await;
+    let out = ApiResponse::send(out.header("x-binnacle-request", "1")).await;
     assert_eq!(out.status, 204);
     assert_eq!(
         with_cookie(&fixture.server, "/me", &cookie).await.problem(),
@@ -374,7 +374,7 @@ async fn a_one_time_code_unlinks_the_provider_account(fixture: Fixture) {
     assert_eq!(redirect_target(&fixture.sign_in().await), "/?sign-in=taken");
     let url = format!("{}/api/v1/invitations/accept", fixture.server.url);
     let body = json!({ "code": code, "password": "seven gulls over the quay" });
-    ApiResponse::of(fixture.server.http.post(url).json(&body))
+    ApiResponse::send(fixture.server.http.post(url).json(&body))
         .await
         .good();
     assert_eq!(fixture.account().await["email"], "ada@example.com");

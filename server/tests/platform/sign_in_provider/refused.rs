@@ -125,7 +125,7 @@ async fn a_blocked_person_cannot_sign_in_through_the_provider(fixture: Fixture) 
     let path = format!("/users/{id}");
     let change = |disabled: bool| {
         let request = fixture.ada.request(Method::PATCH, &path);
-        ApiResponse::of(request.json(&json!({ "disabled": disabled })))
+        ApiResponse::send(request.json(&json!({ "disabled": disabled })))
     };
     change(true).await.good();
     assert_eq!(
@@ -134,7 +134,7 @@ async fn a_blocked_person_cannot_sign_in_through_the_provider(fixture: Fixture) 
     );
     change(false).await.good();
     assert_eq!(fixture.account().await["email"], viewer.email.as_str());
-    let gone = ApiResponse::of(fixture.ada.request(Method::DELETE, &path)).await;
+    let gone = ApiResponse::send(fixture.ada.request(Method::DELETE, &path)).await;
     assert_eq!(gone.status, 204, "{gone:?}");
     assert_eq!(
         redirect_target(&fixture.sign_in().await),

@@ -244,7 +244,7 @@ async fn a_webhook_is_created_once_changed_and_removed(server: TestServer) {
         json!({ "url": " https://example.com/a\n", "kinds": ["alert.raised", "alert.raised"] });
     let twice = || {
         let request = ada.request(Method::POST, "/webhooks").json(&new);
-        ApiResponse::of(request.header("idempotency-key", "one"))
+        ApiResponse::send(request.header("idempotency-key", "one"))
     };
     let made = twice().await.good();
     assert_eq!(twice().await.good(), made);
@@ -257,15 +257,15 @@ async fn a_webhook_is_created_once_changed_and_removed(server: TestServer) {
     let change =
         json!({ "url": "https://example.com/b", "kinds": ["alert.cleared"], "enabled": false });
     let request = ada.request(Method::PUT, &path(&made, "")).json(&change);
-    let changed = ApiResponse::of(request).await.good();
+    let changed = ApiResponse::send(request).await.good();
     assert_eq!(
         (&changed["url"], &changed["enabled"]),
         (&change["url"], &json!(false))
     );
     let viewer = ada.viewer(&server).await;
-    let refused = ApiResponse::of(viewer.request(Method::DELETE, &path(&made, ""))).await;
+    let refused = ApiResponse::send(viewer.request(Method::DELETE, &path(&made, ""))).await;
     assert_eq!(refused.problem(), "forbidden");
-    let removed = ApiResponse::of(ada.request(Method::DELETE, &path(&made, ""))).await;
+    let removed = ApiResponse::send(ada.request(Method::DELETE, &path(&made, ""))).await;
     assert_eq!(removed.status, 204);
     assert_eq!(ada.get(&path(&made, "")).await.problem(), "not-found");
     server.finish().await;
@@ -310,7 +310,7 @@ async fn another_operators_webhooks_are_not_found(server: TestServer) {
             .request(method.clone(), &path(&webhook, rest))
             .json(&change);
         assert_eq!(
-            ApiResponse::of(request).await.problem(),
+            ApiResponse::send(request).await.problem(),
             "not-found",
             "{method} {rest}"
         );

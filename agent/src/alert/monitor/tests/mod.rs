@@ -198,7 +198,7 @@ fn the_limit_is_the_band_and_the_gyros_error_and_grows_towards_the_poles() {
 }
 
 #[test]
-fn it_goes_ashore_again_with_what_came_after_and_ends_when_they_agree() {
+fn an_alert_is_revised_and_closes_after_agreement() {
     let mut ship = ship();
     ship.sail(60, 90.0, WELL);
     ship.sail(200, 90.0, STRUCK);

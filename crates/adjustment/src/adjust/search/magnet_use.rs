@@ -16,10 +16,10 @@ impl MagnetUse {
 
     /// Returns true when no kind exceeds the stock.
     pub(crate) fn within(self, stock: MagnetUse) -> bool {
-        (0..KINDS).all(|kind| self.of(kind) <= stock.of(kind))
+        (0..KINDS).all(|kind| self.count(kind) <= stock.count(kind))
     }
 
-    fn of(self, kind: usize) -> u64 {
+    fn count(self, kind: usize) -> u64 {
         (self.0 >> (8 * kind)) & 0xff
     }
 

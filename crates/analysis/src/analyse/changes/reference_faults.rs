@@ -40,28 +40,41 @@ impl ReferenceUse {
     }
 }
 
+/// Reading of which a reference was dropped.
+struct DroppedReading {
+    /// Index among all readings.
+    index: usize,
+    time: Timestamp,
+    /// What the magnetic compass says of the references.
+    verdict: &'static str,
+}
+
 /// Adds the stretches over which a reference was dropped.
 pub(super) fn dropped_references(all: &[ReferenceUse], changes: &mut Vec<Change>) {
-    let mut dropped: Vec<(usize, Timestamp, &'static str)> = Vec::new();
+    let mut dropped: Vec<DroppedReading> = Vec::new();
     for (index, use_of) in all.iter().enumerate() {
-        let which = match use_of.gyro_share {
+        let verdict = match use_of.gyro_share {
             None => "neither can be confirmed",
             Some(share) if use_of.both && share < 0.01 => "the gyro had failed",
             Some(share) if use_of.both && share > 0.99 => "the satellite compass had failed",
             Some(_) => continue,
         };
-        dropped.push((index, use_of.time, which));
+        dropped.push(DroppedReading {
+            index,
+            time: use_of.time,
+            verdict,
+        });
     }
-    let spells = dropped.chunk_by(|a, b| b.0 - a.0 <= SOUND_ROWS);
-    for spell in spells.filter_map(since_dropped_in_a_row) {
+    let spells = dropped.chunk_by(|a, b| b.index - a.index <= SOUND_ROWS);
+    for spell in spells.filter_map(tail_from_first_dropped_run) {
         let (first, last) = (&spell[0], &spell[spell.len() - 1]);
-        let before = first.0.checked_sub(1).map(|i| all[i].time);
-        let goes_on = last.0 + SOUND_ROWS >= all.len();
+        let before = first.index.checked_sub(1).map(|i| all[i].time);
+        let goes_on = last.index + SOUND_ROWS >= all.len();
         changes.push(Change {
-            from: first.1,
-            from_earliest: before.unwrap_or(first.1),
-            from_latest: first.1,
-            detected_at: spell[FAULT_ROWS - 1].1,
+            from: first.time,
+            from_earliest: before.unwrap_or(first.time),
+            from_latest: first.time,
+            detected_at: spell[FAULT_ROWS - 1].time,
             confirmed: true,
             withdrawn: false,
             cause: Cause::ReferenceFault,
@@ -72,19 +85,19 @@ pub(super) fn dropped_references(all: &[ReferenceUse], changes: &mut Vec<Change>
             evidence: vec![format!(
                 "gyro and satellite compass differed in {} samples; by the magnetic compass, {}",
                 spell.len(),
-                first.2
+                first.verdict
             )],
             deviation_change_deg: None,
             step: None,
-            ended: (!goes_on).then_some(last.1),
+            ended: (!goes_on).then_some(last.time),
         });
     }
 }
 
 /// Returns the spell from the first readings dropped in a row.
-fn since_dropped_in_a_row<T>(spell: &[(usize, Timestamp, T)]) -> Option<&[(usize, Timestamp, T)]> {
-    let in_a_row = |those: &[(usize, Timestamp, T)]| {
-        let between = those.last().map(|last| last.0 - those[0].0);
+fn tail_from_first_dropped_run(spell: &[DroppedReading]) -> Option<&[DroppedReading]> {
+    let in_a_row = |those: &[DroppedReading]| {
+        let between = those.last().map(|last| last.index - those[0].index);
         between.is_some_and(|rows| rows <= FAULT_ROWS)
     };
     let first = spell.windows(FAULT_ROWS).position(in_a_row)?;

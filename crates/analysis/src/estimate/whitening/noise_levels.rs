@@ -39,7 +39,7 @@ pub(crate) struct PriorTerms {
 }
 
 /// Fitted levels, with their slopes.
-pub(crate) struct Found {
+pub(crate) struct NoiseEstimate {
     pub(crate) levels: NoiseLevels,
     /// Slopes of the sum of log variance by the levels' logarithms.
     log_variance: [f64; LEVELS],
@@ -66,7 +66,7 @@ pub(crate) fn fit_levels(
     typical: &NoiseLevels,
     levels: &NoiseLevels,
     effort: SearchEffort,
-) -> Found {
+) -> NoiseEstimate {
     let search = Search {
         effort,
         frames,
@@ -98,8 +98,8 @@ struct Trial {
 }
 
 impl Search<'_> {
-    fn run(&self, logs: Logs) -> Found {
-        let mut found = Found {
+    fn run(&self, logs: Logs) -> NoiseEstimate {
+        let mut found = NoiseEstimate {
             levels: levels_of(&logs),
             log_variance: [0.0; LEVELS],
         };
@@ -245,7 +245,7 @@ fn levels_of(logs: &Logs) -> NoiseLevels {
     NoiseLevels::from_array(std::array::from_fn(|k| logs[k].exp()))
 }
 
-impl Found {
+impl NoiseEstimate {
     /// Returns the compass's share of the noise that separates rows: the trace of V⁻¹
     /// V_compass over that of V⁻¹ V, where V is the noise's covariance.
     ///

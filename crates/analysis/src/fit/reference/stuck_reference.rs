@@ -30,6 +30,14 @@ const SECTOR_SHARE: f64 = 0.06;
 const STEADY_DEG: f64 = 2.0;
 const STEADY_PART: f64 = 0.8;
 
+/// Heading of the reference at one reading.
+#[derive(Clone, Copy)]
+struct ReferenceHeading {
+    /// Index of the reading.
+    index: usize,
+    heading_deg: f64,
+}
+
 /// Returns trust in every reference except where it was stuck; `order` is that of time.
 pub(super) fn trust(readings: &[HeadingReading], order: &[usize]) -> Vec<Trust> {
     let both = Trust {
@@ -55,26 +63,29 @@ fn stuck(
     reference: impl Fn(&HeadingReading) -> Option<f64>,
     other: impl Fn(&HeadingReading) -> Option<f64>,
 ) -> Vec<usize> {
-    let there = order
-        .iter()
-        .filter_map(|&i| Some((i, reference(&readings[i])?)));
-    let there: Vec<(usize, f64)> = there.collect();
+    let there = order.iter().filter_map(|&index| {
+        Some(ReferenceHeading {
+            index,
+            heading_deg: reference(&readings[index])?,
+        })
+    });
+    let there: Vec<ReferenceHeading> = there.collect();
     let repeating = there
-        .chunk_by(|a, b| wrap_180(a.1 - b.1).abs() < SAME_DEG)
-        .filter(|row| row.len() >= IDENTICAL_MIN_ROWS && turned(readings, row));
+        .chunk_by(|a, b| wrap_180(a.heading_deg - b.heading_deg).abs() < SAME_DEG)
+        .filter(|row| row.len() >= IDENTICAL_MIN_ROWS && heading_changed(readings, row));
     let whole = [there.as_slice()].into_iter();
     let oscillating = rows_within(&there, OSCILLATION_DEG)
         .filter(|row| {
             !is_steady(
-                row.iter().filter_map(|&(i, _)| other(&readings[i])),
+                row.iter().filter_map(|at| other(&readings[at.index])),
                 row.len(),
             )
         })
         .chain(whole.filter(|all| circular_sd_deg(all) < OSCILLATION_SD_DEG))
-        .filter(|row| row.len() >= OSCILLATION_MIN_ROWS && went_round(readings, row));
+        .filter(|row| row.len() >= OSCILLATION_MIN_ROWS && covers_full_circle(readings, row));
     repeating
         .chain(oscillating)
-        .flat_map(|row| row.iter().map(|&(index, _)| index))
+        .flat_map(|row| row.iter().map(|at| at.index))
         .collect()
 }
 
@@ -94,11 +105,14 @@ fn is_steady(headings: impl Iterator<Item = f64>, of: usize) -> bool {
 }
 
 /// Returns the rows of readings near the first of each row.
-fn rows_within(there: &[(usize, f64)], near_deg: f64) -> impl Iterator<Item = &[(usize, f64)]> {
+fn rows_within(
+    there: &[ReferenceHeading],
+    near_deg: f64,
+) -> impl Iterator<Item = &[ReferenceHeading]> {
     let mut rest = there;
     std::iter::from_fn(move || {
-        let first = rest.first()?.1;
-        let far = |at: &(usize, f64)| wrap_180(at.1 - first).abs() > near_deg;
+        let first = rest.first()?.heading_deg;
+        let far = |at: &ReferenceHeading| wrap_180(at.heading_deg - first).abs() > near_deg;
         let (row, others) = rest.split_at(rest.iter().position(far).unwrap_or(rest.len()));
         rest = others;
         Some(row)
@@ -106,27 +120,29 @@ fn rows_within(there: &[(usize, f64)], near_deg: f64) -> impl Iterator<Item = &[
 }
 
 /// Returns the standard deviation of directions about their mean direction \[Mardia\].
-fn circular_sd_deg(row: &[(usize, f64)]) -> f64 {
-    let (sin, cos) = row.iter().fold((0.0, 0.0), |(sin, cos), (_, heading)| {
-        let (s, c) = heading.to_radians().sin_cos();
+fn circular_sd_deg(row: &[ReferenceHeading]) -> f64 {
+    let (sin, cos) = row.iter().fold((0.0, 0.0), |(sin, cos), at| {
+        let (s, c) = at.heading_deg.to_radians().sin_cos();
         (sin + s, cos + c)
     });
     let length = f64::hypot(sin, cos) / row.len().max(1) as f64;
     (-2.0 * length.min(1.0).ln()).max(0.0).sqrt().to_degrees()
 }
 
-fn went_round(readings: &[HeadingReading], row: &[(usize, f64)]) -> bool {
+/// Returns true if the compass showed enough different headings in a row.
+fn covers_full_circle(readings: &[HeadingReading], row: &[ReferenceHeading]) -> bool {
     let mut sectors = [0_usize; 12];
-    for &(index, _) in row {
-        sectors[(readings[index].compass.degrees() / 30.0) as usize % 12] += 1;
+    for at in row {
+        sectors[(readings[at.index].compass.degrees() / 30.0) as usize % 12] += 1;
     }
     let enough = (SECTOR_SHARE * row.len() as f64).max(1.0);
     let filled = sectors.iter().filter(|&&count| count as f64 >= enough);
     filled.count() >= ROUND_SECTORS
 }
 
-fn turned(readings: &[HeadingReading], row: &[(usize, f64)]) -> bool {
-    let compass = |&(index, _): &(usize, f64)| readings[index].compass.degrees();
+/// Returns true if the compass turned in a row.
+fn heading_changed(readings: &[HeadingReading], row: &[ReferenceHeading]) -> bool {
+    let compass = |at: &ReferenceHeading| readings[at.index].compass.degrees();
     let first = compass(&row[0]);
     row.iter()
         .any(|at| wrap_180(compass(at) - first).abs() > TURNED_DEG)

@@ -39,7 +39,7 @@ pub(super) const CLONED_AGENT: CauseRow = CauseRow {
     },
     on_card: CardEffect::None,
     on_plan: PlanEffect::None,
-    ending: Ending::Quiet {
+    ending: Ending::AfterSilence {
         seconds: SHOWN_FOR_S,
     },
     ends_with_adjustment: false,

@@ -28,7 +28,7 @@ pub(super) const REPORTED_BY_AGENT: CauseRow = CauseRow {
     advice,
     on_card: CardEffect::Block,
     on_plan: PlanEffect::Note,
-    ending: Ending::Quiet { seconds: QUIET_S },
+    ending: Ending::AfterSilence { seconds: QUIET_S },
     // Reports that suspect the gyro outlast an adjustment: the agent's reports tell.
     ends_with_adjustment: false,
     is_redated: false,
@@ -38,7 +38,7 @@ pub(super) const REPORTED_BY_AGENT: CauseRow = CauseRow {
 fn reported(facts: &AgentReports<'_>) -> Option<Condition> {
     let last = facts.reports.first()?;
     let condition = if last.state == ShipAlertState::Open {
-        parted(last)
+        disagreement(last)
     } else {
         let quiet_s = facts
             .until
@@ -75,7 +75,7 @@ fn since(reports: &[ShipAlert]) -> Option<Timestamp> {
     Some(since)
 }
 
-fn parted(report: &ShipAlert) -> Condition {
+fn disagreement(report: &ShipAlert) -> Condition {
     let size_deg = report.departure_deg().abs();
     let departures = [
         ("gyro", report.gyro_departure_deg),
@@ -121,7 +121,7 @@ fn quiet(last: &ShipAlert, known: &KnownAlert) -> Condition {
             format!("since {since} it is not known whether they are still apart"),
             Case::NotJudged,
         ),
-        _ => (format!("since {since} they agree"), Case::Together),
+        _ => (format!("since {since} they agree"), Case::Agreeing),
     };
     Condition {
         size: Size {
@@ -133,7 +133,7 @@ fn quiet(last: &ShipAlert, known: &KnownAlert) -> Condition {
             "{} parted, reported by the ship's agent; {state}.",
             instruments(last)
         ),
-        ..parted(last)
+        ..disagreement(last)
     }
 }
 

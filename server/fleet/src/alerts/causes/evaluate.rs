@@ -3,7 +3,7 @@
 //! Invariant: each function is pure, and names each cause at most once.
 
 use super::change_rules::{Outcome, alert_cause, outcome};
-use super::facts::{DetectedChange, Facts, Situation};
+use super::facts::{DetectedChange, Facts, OpenCause, Situation};
 use super::row::{CauseRow, Ending};
 use super::table::CAUSES;
 use crate::alerts::cause::Cause;
@@ -11,7 +11,6 @@ use crate::alerts::clearing::{LEARNED, NOT_KNOWN, OVER, RENAMED, WITHDRAWN};
 use crate::alerts::desired::DesiredAlert;
 use crate::analysis::Findings;
 use crate::settings::AlertLimits;
-use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
 
 /// Returns the alerts that facts call for, in the order of the table.
@@ -26,7 +25,7 @@ pub(in crate::alerts) fn evaluate(facts: Facts<'_>) -> Vec<DesiredAlert> {
 pub(in crate::alerts) fn evaluate_analysis(
     findings: &Findings,
     limits: &AlertLimits,
-    open: &[(Cause, Severity)],
+    open: &[OpenCause],
 ) -> Vec<DesiredAlert> {
     let Some(data_until) = findings.data_until else {
         return Vec::new();
@@ -52,7 +51,7 @@ pub(in crate::alerts) fn evaluate_analysis(
 pub(super) fn evaluate_changes(
     findings: &Findings,
     limits: &AlertLimits,
-    open: &[(Cause, Severity)],
+    open: &[OpenCause],
 ) -> Vec<DesiredAlert> {
     let mut desired: Vec<DesiredAlert> = Vec::new();
     for found in findings.changes.iter().rev() {
@@ -60,12 +59,12 @@ pub(super) fn evaluate_changes(
         if desired.iter().any(|alert| alert.cause == cause) {
             continue;
         }
-        let was = open.iter().find(|(open, _)| *open == cause);
+        let was = open.iter().find(|open| open.cause == cause);
         let detected = DetectedChange {
             found,
             findings,
             limits,
-            was: was.map(|(_, severity)| *severity),
+            was: was.map(|open| open.severity),
         };
         desired.extend(cause.row().find(&Facts::Change(&detected)));
     }
@@ -87,7 +86,7 @@ impl CauseRow {
                 Some(Outcome::Renamed) if self.is_redated => RENAMED,
                 Some(Outcome::Renamed) | None => OVER,
             },
-            Ending::NotFound | Ending::NotMeasured(_) | Ending::Quiet { .. } => OVER,
+            Ending::NotFound | Ending::NotMeasured(_) | Ending::AfterSilence { .. } => OVER,
         }
     }
 }

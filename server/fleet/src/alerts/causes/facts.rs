@@ -32,6 +32,15 @@ pub(in crate::alerts) enum Facts<'a> {
     Schedule(&'a JobAtRisk),
 }
 
+/// Cause and severity of an open alert.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::alerts) struct OpenCause {
+    /// Its cause.
+    pub cause: Cause,
+    /// Its severity.
+    pub severity: Severity,
+}
+
 /// Findings of an analysis, with the vessel's limits and the alerts that are open.
 #[derive(Clone, Copy)]
 pub(in crate::alerts) struct Situation<'a> {
@@ -40,7 +49,7 @@ pub(in crate::alerts) struct Situation<'a> {
     /// The vessel's limits.
     pub limits: &'a AlertLimits,
     /// The open alerts' causes and severities.
-    pub open: &'a [(Cause, Severity)],
+    pub open: &'a [OpenCause],
     /// Time of the last sample.
     pub data_until: Timestamp,
     /// True if the changes call for an alert other than a reference's fault.
@@ -141,8 +150,8 @@ pub struct JobAtRisk {
 impl Situation<'_> {
     /// Returns the severity of the open alert of a cause.
     pub(super) fn open_severity(&self, cause: Cause) -> Option<Severity> {
-        let open = self.open.iter().find(|(open, _)| *open == cause);
-        open.map(|(_, severity)| *severity)
+        let open = self.open.iter().find(|open| open.cause == cause);
+        open.map(|open| open.severity)
     }
 
     /// Returns the limit that ends an open alert of a cause, or raises one.

@@ -18,7 +18,7 @@ mod ship_changes;
 mod table;
 
 pub(super) use evaluate::{evaluate, evaluate_analysis};
-pub(super) use facts::{AgentReports, Facts, Silence, StreamConflict};
+pub(super) use facts::{AgentReports, Facts, OpenCause, Silence, StreamConflict};
 pub use facts::{JobAtRisk, UnconfirmedAdjustment};
 pub use row::{CardEffect, PlanEffect};
 pub(super) use row::{Ending, Source};

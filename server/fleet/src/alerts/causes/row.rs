@@ -100,7 +100,7 @@ pub(in crate::alerts) enum Ending {
     /// The change that it is about is over, withdrawn, learned by the model, or renamed.
     WithChange,
     /// Nothing has shown it for a time.
-    Quiet {
+    AfterSilence {
         /// Seconds.
         seconds: f64,
     },
@@ -156,7 +156,7 @@ pub(in crate::alerts) enum Case {
         has_gyro: bool,
     },
     /// Compass and reference have not parted since.
-    Together,
+    Agreeing,
     /// No card judges the compass any more.
     NotJudged,
 }

@@ -4,8 +4,9 @@ use super::agent_alerts::reconcile_reports;
 use crate::adjustments;
 use crate::alerts::after_adjustment::{is_ended_by, remove_earlier_changes};
 use crate::alerts::alert::KnownAlert;
-use crate::alerts::cause::Cause;
-use crate::alerts::causes::{Facts, Source, UnconfirmedAdjustment, evaluate, evaluate_analysis};
+use crate::alerts::causes::{
+    Facts, OpenCause, Source, UnconfirmedAdjustment, evaluate, evaluate_analysis,
+};
 use crate::alerts::clearing::ADJUSTED;
 use crate::alerts::publish::publish_changes;
 use crate::alerts::reconcile::reconcile;
@@ -16,7 +17,6 @@ use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
 use binnacle_platform::events::Event;
 use binnacle_platform::ids::{CompassId, VesselId};
-use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
 
 /// Reconciles a compass's alerts with its last analysis, and with its last adjustment if
@@ -40,8 +40,11 @@ pub async fn reconcile_analysis(
         remove_earlier_changes(&mut findings, adjusted);
     }
     let known = store::known_of(tx, vessel, compass, Source::Analysis).await?;
-    let open = known.iter().map(|alert| (alert.cause, alert.severity));
-    let open: Vec<(Cause, Severity)> = open.collect();
+    let open = known.iter().map(|alert| OpenCause {
+        cause: alert.cause,
+        severity: alert.severity,
+    });
+    let open: Vec<OpenCause> = open.collect();
     let mut desired = evaluate_analysis(&findings, limits, &open);
     if let Some(adjustment) = unconfirmed {
         desired.extend(evaluate(Facts::Verification(&adjustment)));

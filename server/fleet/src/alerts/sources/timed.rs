@@ -72,7 +72,7 @@ pub async fn check_silence(app: &App) -> Result<()> {
 async fn end_quiet(app: &App) -> Result<()> {
     let now: Time = app.clock.now().into();
     for row in &CAUSES {
-        let Ending::Quiet { seconds } = row.ending else {
+        let Ending::AfterSilence { seconds } = row.ending else {
             continue;
         };
         let before = Time(now.0.plus_seconds(-seconds));

@@ -1,7 +1,7 @@
 //! Printed record, drawn from the record's own text alone.
 //!
-//! What always holds: each sheet states that it is a prediction and not a certificate, the order,
-//! and the SHA-256 of its record.
+//! Invariant: each sheet states that it is a prediction and not a certificate, the order, and the
+//! SHA-256 of its record.
 
 mod tables;
 mod values;

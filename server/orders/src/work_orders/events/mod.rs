@@ -1,6 +1,6 @@
 //! Events of a work order: one file for each, with its state change, words and audience.
 //!
-//! What always holds: the stored names of events never change, because the log is kept as text.
+//! Invariant: the stored names of events never change, because the log is kept as text.
 
 mod berth;
 mod cancelled;

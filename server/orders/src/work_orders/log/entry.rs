@@ -1,8 +1,8 @@
 //! Entries of an order's log, each chained to the one before.
 //!
-//! What always holds: an entry is one line of canonical JSON and is kept as that text. Its hash
-//! is the SHA-256 of the text, and the next entry names it. A log can therefore be checked with
-//! nothing but SHA-256.
+//! Invariants: an entry is one line of canonical JSON and is kept as that text. Its hash is the
+//! SHA-256 of the text, and the next entry names it. A log can therefore be checked with nothing
+//! but SHA-256.
 
 use crate::work_orders::events::OrderEvent;
 use binnacle_platform::ids::{FirmId, OrderId};

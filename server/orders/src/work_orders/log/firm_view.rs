@@ -1,7 +1,7 @@
 //! View of an order's log for a firm: exchanges with other firms are withheld.
 //!
-//! What always holds: a withheld entry leaves its number, its hash and that of the entry before,
-//! so that the log can be checked without it.
+//! Invariant: a withheld entry leaves its number, its hash and that of the entry before, so that
+//! the log can be checked without it.
 
 use crate::work_orders::log::canonical_json::canonical;
 use crate::work_orders::log::entry::Entry;

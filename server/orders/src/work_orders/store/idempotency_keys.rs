@@ -1,7 +1,7 @@
 //! Idempotency keys of requests to an order.
 //!
-//! What always holds: a key and its entry are stored in one transaction, and are kept as long as
-//! the order. A key belongs to the operator or to one firm.
+//! Invariants: a key and its entry are stored in one transaction, and are kept as long as the
+//! order. A key belongs to the operator or to one firm.
 
 use crate::work_orders::summary::Summary;
 use binnacle_platform::db::{Db, Tx, execute, row};

@@ -1,7 +1,7 @@
 //! Queries of orders and their logs.
 //!
-//! What always holds: an order is found only by its operator, or by a firm that has an open offer
-//! or proposal, or has the order.
+//! Invariant: an order is found only by its operator, or by a firm that has an open offer or
+//! proposal, or has the order.
 
 use crate::work_orders::state::State;
 use crate::work_orders::store::stored_order::StoredOrder;

@@ -1,7 +1,7 @@
 //! Loading of a schedule's input from the database.
 //!
-//! What always holds: the requests for a schedule are read first, so that a change during loading
-//! leaves a new request. Records are linked by id; sentences use names.
+//! Invariants: the requests for a schedule are read first, so that a change during loading leaves
+//! a new request. Records are linked by id; sentences use names.
 
 mod firms;
 mod former;

@@ -1,7 +1,7 @@
 //! Work orders as the schedule sees them.
 //!
-//! What always holds: an order that is offered to a firm or accepted by it is a job of the plan, at
-//! the call of the offer. An order in progress, or offered to no firm, is beside the plan.
+//! Invariants: an order that is offered to a firm or accepted by it is a job of the plan, at the
+//! call of the offer. An order in progress, or offered to no firm, is beside the plan.
 
 use crate::port_calls::StoredCall as Call;
 use crate::schedule::plan::{LeftOut, NO_TERMS};

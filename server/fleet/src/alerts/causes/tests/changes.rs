@@ -2,6 +2,7 @@
 
 use crate::alerts::cause::Cause;
 use crate::alerts::causes::CAUSES;
+use crate::alerts::causes::OpenCause;
 use crate::alerts::causes::change_rules::{Outcome, outcome};
 use crate::alerts::causes::evaluate::evaluate_changes;
 use crate::alerts::desired::DesiredAlert;
@@ -66,8 +67,13 @@ fn known_as(
         changes,
         ..Findings::default()
     };
-    let open = CAUSES.iter().filter_map(|row| Some((row.cause, was?)));
-    let open: Vec<(Cause, Severity)> = open.collect();
+    let open = CAUSES.iter().filter_map(|row| {
+        Some(OpenCause {
+            cause: row.cause,
+            severity: was?,
+        })
+    });
+    let open: Vec<OpenCause> = open.collect();
     evaluate_changes(&findings, &AlertLimits::default(), &open)
 }
 

@@ -1,7 +1,7 @@
 //! Alerts from the figures of an analysis, and from the clock.
 
 use crate::alerts::cause::Cause;
-use crate::alerts::causes::{Facts, Silence, evaluate, evaluate_analysis};
+use crate::alerts::causes::{Facts, OpenCause, Silence, evaluate, evaluate_analysis};
 use crate::analysis::{FailedLately, Findings};
 use crate::deviation::WorstHeading;
 use crate::settings::AlertLimits;
@@ -33,7 +33,7 @@ fn with_worst(deviation_deg: f64, band95_deg: f64) -> Findings {
     }
 }
 
-fn causes(findings: &Findings, open: &[(Cause, Severity)]) -> Vec<(Cause, Severity)> {
+fn causes(findings: &Findings, open: &[OpenCause]) -> Vec<(Cause, Severity)> {
     let alerts = evaluate_analysis(findings, &AlertLimits::default(), open);
     alerts
         .iter()
@@ -68,7 +68,10 @@ fn deviation_over_the_limit_is_as_bad_as_it_is_certain_and_large() {
 
 #[test]
 fn an_open_alert_stays_until_the_figure_is_well_below_its_limit() {
-    let open = [(Cause::DeviationOverLimit, Severity::Notice)];
+    let open = [OpenCause {
+        cause: Cause::DeviationOverLimit,
+        severity: Severity::Notice,
+    }];
     let alerts = evaluate_analysis(&with_worst(-4.9, 1.0), &AlertLimits::default(), &open);
     assert_eq!(
         alerts[0].summary,
@@ -89,7 +92,10 @@ fn an_alert_sinks_when_the_figure_is_well_below_what_made_it_so_bad() {
         (Warning, 5.4, Notice),
         (Notice, 5.6, Notice),
     ] {
-        let open = [(Cause::DeviationOverLimit, was)];
+        let open = [OpenCause {
+            cause: Cause::DeviationOverLimit,
+            severity: was,
+        }];
         let found = causes(&with_worst(deviation_deg, 1.0), &open);
         let expected = [(Cause::DeviationOverLimit, is)];
         assert_eq!(found, expected, "{was:?} {deviation_deg}");

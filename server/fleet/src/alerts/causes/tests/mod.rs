@@ -41,11 +41,11 @@ fn every_row_is_filled() {
 }
 
 #[test]
-fn only_what_goes_quiet_is_ended_by_the_clock() {
+fn only_alerts_that_end_after_silence_are_ended_by_the_clock() {
     for row in &CAUSES {
-        let is_quiet = matches!(row.ending, Ending::Quiet { .. });
+        let ends_after_silence = matches!(row.ending, Ending::AfterSilence { .. });
         let is_of_a_batch = matches!(row.source(), Source::Agent | Source::Batch);
-        assert_eq!(is_quiet, is_of_a_batch, "{:?}", row.cause);
+        assert_eq!(ends_after_silence, is_of_a_batch, "{:?}", row.cause);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Proposal of another time to the firm that has the order, and its answer.
 //!
-//! What always holds: the agreed time stands until the firm accepts.
+//! Invariant: the agreed time stands until the firm accepts.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
 use crate::work_orders::offers::OfferState;

@@ -9,7 +9,7 @@ use utoipa::ToSchema;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = NotificationWay)]
-pub(super) enum Way {
+pub(super) enum Channel {
     /// On the list, and by mail, held until quiet hours end.
     Mail,
     /// On the list, and with the next digest.
@@ -20,14 +20,14 @@ pub(super) enum Way {
     Off,
 }
 
-impl Way {
+impl Channel {
     /// Returns the default way of a kind. Alerts have the operator's mailing list, and a viewer
     /// gets no mail by default.
-    pub(super) fn default_for(kind: Kind, role: Role) -> Way {
+    pub(super) fn default_for(kind: Kind, role: Role) -> Channel {
         match (role, kind) {
-            (Role::Viewer, _) | (_, Kind::Alert) => Way::List,
-            (_, Kind::DueSoon | Kind::Completed) => Way::Digest,
-            _ => Way::Mail,
+            (Role::Viewer, _) | (_, Kind::Alert) => Channel::List,
+            (_, Kind::DueSoon | Kind::Completed) => Channel::Digest,
+            _ => Channel::Mail,
         }
     }
 }

@@ -72,7 +72,7 @@ pub(super) struct SampleDots {
 }
 
 /// Summarizes samples in order of time.
-pub(super) fn picture(samples: &[SampleDiagnostic]) -> SamplePicture {
+pub(super) fn summarize(samples: &[SampleDiagnostic]) -> SamplePicture {
     let measured: Vec<&SampleDiagnostic> = samples
         .iter()
         .filter(|found| found.deviation_deg.is_some())
@@ -195,7 +195,7 @@ mod tests {
             sample(0.7 * DAY_S, None, false),
             sample(2.0 * DAY_S, Some(0.5), true),
         ];
-        let found = picture(&samples);
+        let found = summarize(&samples);
         assert_eq!((found.samples, found.with_residual), (5, 4));
         assert_eq!(found.interval_days, 1);
         let of = |index: usize| {
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn beyond_a_month_means_are_by_week() {
         let found = |days: f64| {
-            picture(&[
+            summarize(&[
                 sample(0.9 * DAY_S, Some(1.0), true),
                 sample(days * DAY_S, Some(1.0), true),
             ])
@@ -229,10 +229,10 @@ mod tests {
         let many: Vec<SampleDiagnostic> = (0..3_000)
             .map(|i| sample(600.0 * f64::from(i), Some(0.1), true))
             .collect();
-        let found = picture(&many);
+        let found = summarize(&many);
         assert_eq!((found.samples, found.dots.used.len()), (3_000, MOST_DOTS));
         assert_eq!(found.dots.unix_s[1] - found.dots.unix_s[0], 1_200);
-        assert_eq!(picture(&[]).dots.used.len(), 0);
-        assert_eq!(picture(&[]).rms_deg, None);
+        assert_eq!(summarize(&[]).dots.used.len(), 0);
+        assert_eq!(summarize(&[]).rms_deg, None);
     }
 }
