@@ -3,7 +3,7 @@
 use super::alert::Alert;
 use super::change::AlertChange;
 use binnacle_platform::ids::OperatorId;
-use binnacle_platform::mail::{Announcement, Letter, header, one_line, wrapped};
+use binnacle_platform::mail::{Announcement, Letter, Phase, header, one_line, wrapped};
 use binnacle_platform::notices::{self, Notice, NoticesPublished};
 use binnacle_platform::outbox::{Kind, Message};
 use binnacle_platform::severity::Severity;
@@ -23,13 +23,20 @@ pub(super) fn message(change: &AlertChange, now: Time) -> Message {
     }
 }
 
-/// Returns the announcement for those who get mail about alerts.
-pub(super) fn announcement(change: &AlertChange) -> Announcement {
+/// Returns the announcement for those who get mail about alerts, if the change is announced.
+pub(super) fn announcement(change: &AlertChange) -> Option<Announcement> {
+    let phase = match change.kind {
+        Kind::AlertRaised => Phase::Started,
+        Kind::AlertUpdated => Phase::Updated,
+        Kind::AlertCleared => Phase::Ended,
+        _ => return None,
+    };
     let alert = &change.alert;
     let (subject, text) = words_of(change);
-    Announcement {
+    Some(Announcement {
         id: change.id,
         kind: change.kind,
+        phase,
         topic: alert.id.0,
         series: series(alert),
         severity: alert.severity,
@@ -41,7 +48,7 @@ pub(super) fn announcement(change: &AlertChange) -> Announcement {
             about: Some(alert.id.0),
             files: None,
         },
-    }
+    })
 }
 
 /// Names the series of alerts with the same compass and cause.
