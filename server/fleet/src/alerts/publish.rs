@@ -30,7 +30,7 @@ pub(super) async fn publish_changes(
         let Some(kind) = *kind else {
             continue;
         };
-        info!(%vessel, %alert, ?kind, "an alert changed");
+        info!(%vessel, %alert, kind = format_args!("Alert{kind:?}"), "an alert changed");
         changes.push(AlertChange {
             id: DeliveryId::new(),
             kind,

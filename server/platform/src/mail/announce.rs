@@ -112,7 +112,7 @@ mod tests {
     fn announced(phase: Phase, series: &str, severity: Severity) -> Announcement {
         Announcement {
             id: DeliveryId::new(),
-            kind: Kind::Test,
+            kind: Kind::TEST,
             phase,
             topic: Uuid::now_v7(),
             series: series.to_owned(),

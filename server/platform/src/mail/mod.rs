@@ -170,7 +170,7 @@ async fn test_recipient(
     must_be_set_up(&app)?;
     let message = Message {
         id: DeliveryId::new(),
-        kind: Kind::Test,
+        kind: Kind::TEST,
         order: None,
         body: serde_json::to_string(&Letter::test())?,
     };
