@@ -11,6 +11,7 @@
     reason = "counts go into BIGINT and are far from its end"
 )]
 
+pub mod kinds;
 pub mod state;
 pub mod subscriptions;
 

@@ -1,9 +1,11 @@
 //! State of the whole server: that of the platform and of single capabilities.
 
+use crate::kinds::message_kinds;
 use axum::extract::FromRef;
 use binnacle_orders::berth_session::CorrectorPlanSlots;
 use binnacle_planning::schedule::PlanSlots;
 use binnacle_platform::app::App;
+use binnacle_platform::webhooks::MessageKinds;
 
 /// State of every route; each handler takes the part it needs by [`FromRef`].
 #[derive(Clone)]
@@ -14,6 +16,8 @@ pub struct ServerState {
     pub plan_slots: PlanSlots,
     /// Slots for corrector plans being made.
     pub corrector_plan_slots: CorrectorPlanSlots,
+    /// Kinds of messages that webhooks may subscribe to.
+    pub message_kinds: MessageKinds,
 }
 
 impl ServerState {
@@ -23,6 +27,7 @@ impl ServerState {
             app,
             plan_slots: PlanSlots::default(),
             corrector_plan_slots: CorrectorPlanSlots::default(),
+            message_kinds: message_kinds(),
         }
     }
 }
@@ -42,5 +47,11 @@ impl FromRef<ServerState> for PlanSlots {
 impl FromRef<ServerState> for CorrectorPlanSlots {
     fn from_ref(state: &ServerState) -> CorrectorPlanSlots {
         state.corrector_plan_slots.clone()
+    }
+}
+
+impl FromRef<ServerState> for MessageKinds {
+    fn from_ref(state: &ServerState) -> MessageKinds {
+        state.message_kinds.clone()
     }
 }

@@ -1,10 +1,12 @@
-//! Event subscriptions: one table, in the order in which the handlers run.
+//! Subscriptions: one table of the handlers of events, in the order in which they run, and of
+//! questions.
 
+use binnacle_fleet::vessels;
 use binnacle_orders::work_orders;
 use binnacle_planning::{calendar, notifications, port_calls, schedule};
 use binnacle_platform::db::Subscribers;
 
-/// Returns the handlers of every event of the server.
+/// Returns the handlers of every event and every question of the server.
 pub fn subscribers() -> Subscribers {
     Subscribers::default()
         .on(work_orders::refuse_leave_of_service)
@@ -16,4 +18,5 @@ pub fn subscribers() -> Subscribers {
         .on(calendar::delete_feeds)
         .on(notifications::create_notifications)
         .on(port_calls::note_berth_heading)
+        .answer(vessels::find_owner)
 }

@@ -1,6 +1,7 @@
 //! Tenants: operators with a fleet, and firms that adjust compasses.
 
-use crate::ids::{FirmId, OperatorId};
+use crate::db::Question;
+use crate::ids::{FirmId, OperatorId, VesselId};
 use uuid::Uuid;
 
 /// Operator or firm.
@@ -10,6 +11,23 @@ pub enum Tenant {
     Operator(OperatorId),
     /// Company that adjusts compasses.
     Firm(FirmId),
+}
+
+/// Question for the owner of a vessel; `None` where there is no such vessel.
+#[derive(Clone, Copy, Debug)]
+pub struct OwnerOf(pub VesselId);
+
+impl Question for OwnerOf {
+    type Answer = Option<VesselOwner>;
+}
+
+/// Owner of a vessel, and the name that the owner gave to it.
+#[derive(Clone, Debug, PartialEq, Eq, sqlx::FromRow)]
+pub struct VesselOwner {
+    /// Operator of the vessel.
+    pub operator_id: OperatorId,
+    /// Name of the vessel.
+    pub name: String,
 }
 
 impl Tenant {

@@ -6,6 +6,7 @@
 
 use axum::http::StatusCode;
 use binnacle_compass::openapi::{allow_unknown_properties, flatten, schema_mut};
+use serde_json::Value;
 use std::mem;
 use utoipa::ToSchema;
 use utoipa::openapi::path::{Operation, ParameterIn};
@@ -54,6 +55,22 @@ pub(super) fn correct_schemas(document: &mut OpenApi) {
             allow_unknown_properties(form);
         }
     }
+}
+
+/// Lists the values that a schema of names allows.
+///
+/// # Panics
+/// When the document has no such schema: a mistake in the code.
+pub(super) fn list_values(
+    document: &mut OpenApi,
+    name: &str,
+    values: impl Iterator<Item = &'static str>,
+) {
+    let schemas = &mut document.components.get_or_insert_default().schemas;
+    let Some(RefOr::T(Schema::Object(schema))) = schemas.get_mut(name) else {
+        panic!("the document has no schema {name}");
+    };
+    schema.enum_values = Some(values.map(Value::from).collect());
 }
 
 /// Adds the details common to all operations.

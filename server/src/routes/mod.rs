@@ -3,6 +3,7 @@
 mod docs;
 mod document;
 
+use crate::kinds::message_kinds;
 use crate::state::ServerState;
 use crate::{dashboard, health};
 use axum::Router;
@@ -145,6 +146,7 @@ fn parts() -> (
     document::add_problem_fields::<NoModelFields>(&mut document);
     document::add_problem_fields::<NotAdjustableFields>(&mut document);
     document::correct_schemas(&mut document);
+    document::list_values(&mut document, "MessageKind", message_kinds().names());
     document::complete(&mut document);
     let people = people
         .route("/api/openapi.json", get(docs::document))

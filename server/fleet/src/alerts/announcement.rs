@@ -1,11 +1,11 @@
 //! Text of an announced alert: letter, webhook message and notice.
 
 use super::alert::Alert;
-use super::change::AlertChange;
+use super::change::{AlertChange, ChangeKind};
 use binnacle_platform::ids::OperatorId;
-use binnacle_platform::mail::{Announcement, Letter, header, one_line, wrapped};
+use binnacle_platform::mail::{Announcement, Letter, Phase, header, one_line, wrapped};
 use binnacle_platform::notices::{self, Notice, NoticesPublished};
-use binnacle_platform::outbox::{Kind, Message};
+use binnacle_platform::outbox::Message;
 use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
 use serde_json::json;
@@ -15,21 +15,29 @@ pub(super) fn message(change: &AlertChange, now: Time) -> Message {
     let AlertChange {
         id, kind, alert, ..
     } = change;
+    let kind = kind.message_kind();
     Message {
         id: *id,
-        kind: *kind,
+        kind,
         order: None,
         body: json!({ "id": id, "kind": kind, "at": now, "alert": alert }).to_string(),
     }
 }
 
-/// Returns the announcement for those who get mail about alerts.
-pub(super) fn announcement(change: &AlertChange) -> Announcement {
+/// Returns the announcement for those who get mail about alerts, if the change is announced.
+pub(super) fn announcement(change: &AlertChange) -> Option<Announcement> {
+    let phase = match change.kind {
+        ChangeKind::Raised => Phase::Started,
+        ChangeKind::Updated => Phase::Updated,
+        ChangeKind::Cleared => Phase::Ended,
+        ChangeKind::Acknowledged => return None,
+    };
     let alert = &change.alert;
     let (subject, text) = words_of(change);
-    Announcement {
+    Some(Announcement {
         id: change.id,
-        kind: change.kind,
+        kind: change.kind.message_kind(),
+        phase,
         topic: alert.id.0,
         series: series(alert),
         severity: alert.severity,
@@ -41,7 +49,7 @@ pub(super) fn announcement(change: &AlertChange) -> Announcement {
             about: Some(alert.id.0),
             files: None,
         },
-    }
+    })
 }
 
 /// Names the series of alerts with the same compass and cause.
@@ -69,15 +77,15 @@ fn notice(change: &AlertChange) -> Option<Notice> {
     let is_urgent = alert.severity >= Severity::Warning;
     let was_urgent = change.was.is_some_and(|was| was >= Severity::Warning);
     let is_announced = match change.kind {
-        Kind::AlertRaised | Kind::AlertCleared => is_urgent,
+        ChangeKind::Raised | ChangeKind::Cleared => is_urgent,
         // People who were notified hear once that it is less urgent, now or when it is over.
-        Kind::AlertUpdated => critical || is_urgent != was_urgent,
-        _ => false,
+        ChangeKind::Updated => critical || is_urgent != was_urgent,
+        ChangeKind::Acknowledged => false,
     };
     let (subject, text) = words_of(change);
     is_announced.then(|| Notice {
         kind: notices::Kind::Alert,
-        urgent: critical && change.kind != Kind::AlertCleared,
+        urgent: critical && change.kind != ChangeKind::Cleared,
         subject,
         text,
         path: format!("/vessels/{}", alert.vessel_id),
@@ -91,8 +99,8 @@ fn notice(change: &AlertChange) -> Option<Notice> {
 fn words_of(change: &AlertChange) -> (String, String) {
     let alert = &change.alert;
     let state = match (change.kind, change.was) {
-        (Kind::AlertCleared, _) if alert.is_over() => "over".to_owned(),
-        (Kind::AlertCleared, _) => "closed".to_owned(),
+        (ChangeKind::Cleared, _) if alert.is_over() => "over".to_owned(),
+        (ChangeKind::Cleared, _) => "closed".to_owned(),
         (_, Some(was)) if was > alert.severity => format!("only {} now", alert.severity),
         _ => alert.severity.to_string(),
     };
@@ -109,7 +117,7 @@ fn text(change: &AlertChange) -> String {
         format!("Severity: {}{}", alert.severity, before.unwrap_or_default()),
         format!("Since:    {}", alert.since.to_the_minute()),
     ];
-    if let (Kind::AlertCleared, Some(cleared_at)) = (*kind, alert.cleared_at) {
+    if let (ChangeKind::Cleared, Some(cleared_at)) = (*kind, alert.cleared_at) {
         let word = if alert.is_over() {
             "Over:  "
         } else {

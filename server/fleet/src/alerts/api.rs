@@ -1,7 +1,7 @@
 //! HTTP API of alerts.
 
 use super::alert::{Alert, State};
-use super::change::PendingChange;
+use super::change::{ChangeKind, PendingChange};
 use super::publish::publish_changes;
 use super::requests::{Acknowledgement, AlertList, Clearing, Filter};
 use super::store::{self, Remark};
@@ -11,7 +11,6 @@ use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone, text};
 use binnacle_platform::ids::AlertId;
-use binnacle_platform::outbox::Kind;
 use binnacle_platform::session;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -75,7 +74,7 @@ async fn acknowledge_alert(
 ) -> Result<Json<Alert>> {
     let note = acknowledgement.note.filter(|note| !note.trim().is_empty());
     let note = note.map(|note| text("note", &note)).transpose()?;
-    let alert = change(&app, writer, id, note, Kind::AlertAcknowledged).await?;
+    let alert = change(&app, writer, id, note, ChangeKind::Acknowledged).await?;
     if alert.state == State::Cleared {
         return Err(Error::Gone("this alert is cleared"));
     }
@@ -98,7 +97,7 @@ async fn clear_alert(
 ) -> Result<Json<Alert>> {
     let reason = Some(text("reason", &clearing.reason)?);
     Ok(Json(
-        change(&app, writer, id, reason, Kind::AlertCleared).await?,
+        change(&app, writer, id, reason, ChangeKind::Cleared).await?,
     ))
 }
 
@@ -108,7 +107,7 @@ async fn change(
     writer: Writer,
     id: AlertId,
     remark: Option<String>,
-    kind: Kind,
+    kind: ChangeKind,
 ) -> Result<Alert> {
     let alert = store::must_find(&app.db, writer.operator, id).await?;
     let now = app.clock.now().into();
@@ -121,7 +120,7 @@ async fn change(
     };
     store::lock(&mut tx, vessel, alert.compass_id).await?;
     let has_changed = match kind {
-        Kind::AlertAcknowledged => store::acknowledge(&mut tx, vessel, id, &remark).await?,
+        ChangeKind::Acknowledged => store::acknowledge(&mut tx, vessel, id, &remark).await?,
         _ => store::clear(&mut tx, vessel, id, &remark).await?,
     };
     if has_changed {

@@ -21,6 +21,7 @@ mod causes;
 mod change;
 mod clearing;
 mod desired;
+pub mod message_kinds;
 mod publish;
 mod reconcile;
 mod requests;

@@ -30,7 +30,7 @@ pub(super) async fn publish_changes(
         let Some(kind) = *kind else {
             continue;
         };
-        info!(%vessel, %alert, ?kind, "an alert changed");
+        info!(%vessel, %alert, kind = format_args!("Alert{kind:?}"), "an alert changed");
         changes.push(AlertChange {
             id: DeliveryId::new(),
             kind,
@@ -42,7 +42,7 @@ pub(super) async fn publish_changes(
     let operator = event.operator_id;
     let messages: Vec<Message> = changes.iter().map(|one| message(one, now)).collect();
     webhooks::announce(tx, operator.into(), &messages, now).await?;
-    let announcements: Vec<Announcement> = changes.iter().map(announcement).collect();
+    let announcements: Vec<Announcement> = changes.iter().filter_map(announcement).collect();
     mail::announce(tx, operator, &announcements, now).await?;
     tx.publish(&notices(operator, &changes, now)).await?;
     Ok(Some(event))

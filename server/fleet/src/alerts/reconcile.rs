@@ -8,7 +8,7 @@
 
 use super::alert::{KnownAlert, State};
 use super::causes::Source;
-use super::change::PendingChange;
+use super::change::{ChangeKind, PendingChange};
 use super::clearing::{FOLLOWED, OUT_OF_SERVICE, OVER};
 use super::desired::DesiredAlert;
 use super::publish::publish_changes;
@@ -18,7 +18,6 @@ use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
 use binnacle_platform::events::Event;
 use binnacle_platform::ids::{CompassId, VesselId};
-use binnacle_platform::outbox::Kind;
 use binnacle_platform::time::Time;
 
 /// Reconciles a compass's alerts of one source, and publishes the changes.
@@ -75,7 +74,7 @@ pub(super) async fn reconcile(
         };
         store::end(tx, vessel, alert.id, reason, now).await?;
         if alert.state != State::Cleared {
-            changes.push(PendingChange::from_kind(alert.id, Kind::AlertCleared));
+            changes.push(PendingChange::from_kind(alert.id, ChangeKind::Cleared));
         }
     }
     for desired in desired {
@@ -93,7 +92,7 @@ async fn open_or_update(
     desired: &DesiredAlert,
     now: Time,
 ) -> Result<Vec<PendingChange>> {
-    let raised = |alert| PendingChange::from_kind(alert, Kind::AlertRaised);
+    let raised = |alert| PendingChange::from_kind(alert, ChangeKind::Raised);
     let Some(known) = known else {
         let id = store::insert(tx, vessel, compass, desired, now).await?;
         return Ok(vec![raised(id)]);
@@ -103,7 +102,7 @@ async fn open_or_update(
     let is_cleared = known.state == State::Cleared;
     if is_another || (is_cleared && is_worse) {
         store::end(tx, vessel, known.id, FOLLOWED, now).await?;
-        let cleared = (!is_cleared).then(|| PendingChange::from_kind(known.id, Kind::AlertCleared));
+        let cleared = (!is_cleared).then(|| PendingChange::from_kind(known.id, ChangeKind::Cleared));
         let id = store::insert(tx, vessel, compass, desired, now).await?;
         return Ok(cleared.into_iter().chain([raised(id)]).collect());
     }
@@ -113,8 +112,8 @@ async fn open_or_update(
     store::update(tx, vessel, known, desired, now).await?;
     let kind = match known.state {
         _ if desired.severity == known.severity => None,
-        State::Acknowledged if is_worse => Some(Kind::AlertRaised),
-        _ => Some(Kind::AlertUpdated),
+        State::Acknowledged if is_worse => Some(ChangeKind::Raised),
+        _ => Some(ChangeKind::Updated),
     };
     Ok(vec![PendingChange {
         alert: known.id,

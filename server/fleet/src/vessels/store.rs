@@ -4,7 +4,9 @@ use super::{LastPosition, NewVessel};
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::error::{self, Error};
 use binnacle_platform::ids::{OperatorId, VesselId};
+use binnacle_platform::tenants::{OwnerOf, VesselOwner};
 use binnacle_platform::time::Time;
+use futures_util::future::BoxFuture;
 use uuid::Uuid;
 
 /// A vessel's own columns.
@@ -45,6 +47,21 @@ impl VesselRow {
             at: self.last_sample_at?,
         })
     }
+}
+
+/// Returns the owner of a vessel.
+pub fn find_owner<'a>(
+    tx: &'a mut Tx,
+    of: &'a OwnerOf,
+) -> BoxFuture<'a, Result<Option<VesselOwner>>> {
+    Box::pin(async move {
+        row!(
+            in tx,
+            VesselOwner,
+            "SELECT operator_id, name FROM vessels WHERE id = $1 ORDER BY id",
+            of.0
+        )
+    })
 }
 
 pub(crate) async fn list(

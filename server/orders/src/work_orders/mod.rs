@@ -11,6 +11,7 @@
 
 pub(crate) mod events;
 pub(crate) mod log;
+pub mod message_kinds;
 pub(crate) mod new_order;
 mod notification_text;
 pub(crate) mod offers;

@@ -5,6 +5,7 @@
 
 use crate::work_orders::events::Audience;
 use crate::work_orders::log::entry::Entry;
+use crate::work_orders::message_kinds;
 use crate::work_orders::notification_text;
 use crate::work_orders::offers::{Offer, OfferState, Offers};
 use crate::work_orders::state::State;
@@ -139,7 +140,12 @@ fn messages_for(
     {
         // The reason is confidential: another firm may have it.
         let body = json!({ "seq": last.seq, "kind": "withdrawn", "at": last.at });
-        messages.push(message_with_entry(Kind::OrderWithdrawn, &seen, &body, now));
+        messages.push(message_with_entry(
+            message_kinds::WITHDRAWN,
+            &seen,
+            &body,
+            now,
+        ));
     }
     messages
 }

@@ -18,7 +18,7 @@ mod store;
 
 pub use create::create_notifications;
 pub use needs::notify_of_needs;
-pub use send::{send_due, watch};
+pub use send::{MESSAGE_KIND, send_due, watch};
 
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;

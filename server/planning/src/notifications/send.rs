@@ -9,11 +9,16 @@ use binnacle_platform::app::App;
 use binnacle_platform::db::{Tx, row};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{DeliveryId, FirmId, OperatorId, UserId};
-use binnacle_platform::outbox::{self, Channel, Message};
+use binnacle_platform::outbox::{self, Channel, Kind, Message};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
+use binnacle_platform::webhooks::{Audience, DeclaredKind};
 use std::time::Duration;
 use tracing::error;
+
+/// Notification mail to a user: one notification, or a digest of several.
+pub const MESSAGE_KIND: DeclaredKind =
+    DeclaredKind::new(Kind::new("notification"), Audience::Nobody);
 
 /// Interval between checks for due mail.
 const POLL_INTERVAL: Duration = Duration::from_secs(5);
@@ -81,7 +86,7 @@ async fn queue_mail(
         outbox::ensure(tx, tenant, user.0, Channel::Mail).await?;
         let message = Message {
             id: DeliveryId::new(),
-            kind: outbox::Kind::Notification,
+            kind: MESSAGE_KIND.kind,
             order: None,
             body: letter?,
         };

@@ -12,7 +12,7 @@ mod report;
 mod settings;
 
 pub use mailing_list::MAILING_LIST;
-pub use monthly::{make_due_reports, watch};
+pub use monthly::{MESSAGE_KIND, make_due_reports, watch};
 
 use axum::extract::{FromRef, State};
 use axum::response::Response;

@@ -14,9 +14,13 @@ use binnacle_platform::error::Result;
 use binnacle_platform::ids::{DeliveryId, OperatorId, RecipientId};
 use binnacle_platform::outbox::{self, Kind, Message};
 use binnacle_platform::time::Time;
+use binnacle_platform::webhooks::{Audience, DeclaredKind};
 use chrono::{DateTime, Datelike, Days, NaiveDate, NaiveTime, Timelike, Utc};
 use std::time::Duration;
 use tracing::error;
+
+/// Monthly report by mail.
+pub const MESSAGE_KIND: DeclaredKind = DeclaredKind::new(Kind::new("report"), Audience::Nobody);
 
 /// Interval between checks for the end of a month.
 const POLL_INTERVAL: Duration = Duration::from_mins(10);
@@ -105,7 +109,7 @@ async fn make_report(
     for (recipient,) in list_recipients(&mut tx, operator, ended).await? {
         let message = Message {
             id: DeliveryId::new(),
-            kind: Kind::Report,
+            kind: MESSAGE_KIND.kind,
             order: None,
             body: body.clone(),
         };

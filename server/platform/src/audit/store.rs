@@ -1,8 +1,8 @@
 //! Audit lines in the database.
 
 use super::{Filter, Line};
-use crate::db::{Db, Result, Tx, execute, row, rows};
-use crate::ids::{FirmId, OperatorId, VesselId};
+use crate::db::{Db, Result, Tx, execute, rows};
+use crate::ids::{FirmId, OperatorId};
 use crate::time::Time;
 use uuid::Uuid;
 
@@ -94,17 +94,4 @@ pub(super) async fn remove_before(db: &Db, before: Time) -> Result<u64> {
     let removed = execute!(&mut tx, "DELETE FROM audit_lines WHERE at < $1", before)?;
     tx.commit().await?;
     Ok(removed)
-}
-
-/// Returns a vessel's operator and name.
-pub(super) async fn owner_of(
-    tx: &mut Tx,
-    vessel: VesselId,
-) -> Result<Option<(OperatorId, String)>> {
-    row!(
-        in tx,
-        (OperatorId, String),
-        "SELECT operator_id, name FROM vessels WHERE id = $1 ORDER BY id",
-        vessel
-    )
 }

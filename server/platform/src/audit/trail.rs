@@ -3,7 +3,7 @@
 use super::{ActorKind, Line, store};
 use crate::db::{self, CommitHook, Db, Tx};
 use crate::ids::{AgentId, OrderId, TokenId, UserId, VesselId};
-use crate::tenants::Tenant;
+use crate::tenants::{OwnerOf, Tenant};
 use crate::time::Time;
 use axum::http::StatusCode;
 use futures_util::future::BoxFuture;
@@ -182,10 +182,10 @@ impl AuditTrail {
                 vessel = find(tx, order).await?;
             }
             if let Some(vessel) = vessel {
-                owner = store::owner_of(tx, vessel).await?;
+                owner = tx.ask(&OwnerOf(vessel)).await?;
             }
         }
-        let owner_id = owner.as_ref().map(|(operator, _)| operator.0);
+        let owner_id = owner.as_ref().map(|owner| owner.operator_id.0);
         let (operator_id, firm_id) = match facts.tenant.or(actor.tenant) {
             Some(Tenant::Operator(operator)) => (Some(operator.0), None),
             Some(Tenant::Firm(firm)) => (owner_id, Some(firm.0)),
@@ -195,7 +195,7 @@ impl AuditTrail {
             ),
         };
         let actor_name = match (actor.kind, owner) {
-            (ActorKind::Agent, Some((_, vessel_name))) => vessel_name,
+            (ActorKind::Agent, Some(owner)) => owner.name,
             _ => actor.name,
         };
         let line = Line {

@@ -8,7 +8,8 @@
 //! A transaction may carry a [`CommitHook`], which writes into it last. That is how a
 //! change gets its line in the audit log while this module knows nothing of that log.
 //!
-//! An event published in a transaction is handled in it, see [`Subscribers`].
+//! An event published in a transaction is handled in it, and a question asked in it is
+//! answered in it, see [`Subscribers`].
 //!
 //! The macros take the SQL as a literal and run it on the open database: `rows!`, `row!`
 //! and `execute!`.
@@ -18,11 +19,12 @@ mod queries;
 mod subscribers;
 
 pub use crate::{execute, row, rows};
-pub use subscribers::{DomainEvent, Handler, Subscribers};
+pub use subscribers::{Answerer, DomainEvent, Handler, Question, Subscribers};
 
 use crate::error;
 use futures_util::future::BoxFuture;
 use sqlx::{PgPool, Postgres, Sqlite, SqlitePool, Transaction};
+use std::any::type_name;
 use std::sync::Arc;
 
 /// Result of a database call.
@@ -146,6 +148,18 @@ impl Tx {
             handler(self, event).await?;
         }
         Ok(())
+    }
+
+    /// Asks a question, which its handler answers in this transaction.
+    ///
+    /// # Errors
+    /// When the question has no handler, or the handler fails.
+    pub async fn ask<Q: Question>(&mut self, question: &Q) -> Result<Q::Answer> {
+        let Some(answerer) = self.subscribers.to::<Q>() else {
+            let name = type_name::<Q>();
+            return Err(sqlx::Error::Protocol(format!("{name} has no handler")));
+        };
+        answerer(self, question).await
     }
 
     /// Returns the connection on which the statements of this transaction run.

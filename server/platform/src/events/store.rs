@@ -1,10 +1,10 @@
 //! Events in the database, kept for a day.
 
 use super::{Event, EventStored, Kind};
-use crate::db::{Connection, Db, Result, Tx, execute, row, rows};
+use crate::db::{Connection, Db, Result, Tx, execute, rows};
 use crate::error;
-use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
-use crate::tenants::Tenant;
+use crate::ids::{EventId, FirmId, OrderId, VesselId};
+use crate::tenants::{OwnerOf, Tenant};
 use crate::time::Time;
 
 /// Channel of PostgreSQL's NOTIFY.
@@ -45,13 +45,9 @@ async fn write(
     order_id: Option<OrderId>,
     now: Time,
 ) -> error::Result<Event> {
-    let (operator_id,) = row!(
-        in &mut *tx,
-        (OperatorId,),
-        "SELECT operator_id FROM vessels WHERE id = $1 ORDER BY id",
-        vessel_id
-    )?
-    .ok_or_else(|| anyhow::anyhow!("vessel {vessel_id} is missing"))?;
+    let owner = tx.ask(&OwnerOf(vessel_id)).await?;
+    let owner = owner.ok_or_else(|| anyhow::anyhow!("vessel {vessel_id} is missing"))?;
+    let operator_id = owner.operator_id;
     let event = Event {
         id: EventId::new(),
         operator_id,

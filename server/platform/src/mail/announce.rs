@@ -15,8 +15,10 @@ use uuid::Uuid;
 pub struct Announcement {
     /// Id of the delivery.
     pub id: DeliveryId,
-    /// Kind of announcement: start, update or end of the topic.
+    /// Kind of the message that carries the letter.
     pub kind: Kind,
+    /// Phase of the topic that is announced.
+    pub phase: Phase,
     /// Topic: each recipient gets a letter when it gets worse, and when it ends.
     pub topic: Uuid,
     /// Name that successive topics have in common.
@@ -25,6 +27,17 @@ pub struct Announcement {
     pub severity: Severity,
     /// Letter to send.
     pub letter: Letter,
+}
+
+/// Phase of a topic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// The topic has started, or has started again.
+    Started,
+    /// The severity of the topic has changed.
+    Updated,
+    /// The topic has ended.
+    Ended,
 }
 
 /// Queues letters for the recipients of an operator whose minimum severity is reached.
@@ -55,11 +68,11 @@ pub async fn announce(
 /// That letter makes the one about the end of this topic redundant.
 fn is_replaced(announcement: &Announcement, least: Severity, all: &[Announcement]) -> bool {
     let is_next = |other: &Announcement| {
-        other.kind == Kind::AlertRaised
+        other.phase == Phase::Started
             && other.severity >= least
             && other.series == announcement.series
     };
-    announcement.kind == Kind::AlertCleared && all.iter().any(is_next)
+    announcement.phase == Phase::Ended && all.iter().any(is_next)
 }
 
 /// Notes the severity last sent to a recipient. Returns true if a letter is due.
@@ -71,8 +84,8 @@ async fn note(
 ) -> Result<bool> {
     let topic = announcement.topic;
     let written = store::last_severity(tx, recipient, topic).await?;
-    match announcement.kind {
-        Kind::AlertRaised | Kind::AlertUpdated => {
+    match announcement.phase {
+        Phase::Started | Phase::Updated => {
             let severity = announcement.severity;
             if severity < least {
                 // For this recipient the topic has ended.
@@ -85,11 +98,10 @@ async fn note(
             store::note_severity(tx, recipient, topic, severity).await?;
             Ok(true)
         }
-        Kind::AlertCleared => {
+        Phase::Ended => {
             store::forget(tx, recipient, topic).await?;
             Ok(written.is_some())
         }
-        _ => Ok(false),
     }
 }
 
@@ -97,10 +109,11 @@ async fn note(
 mod tests {
     use super::*;
 
-    fn announced(kind: Kind, series: &str, severity: Severity) -> Announcement {
+    fn announced(phase: Phase, series: &str, severity: Severity) -> Announcement {
         Announcement {
             id: DeliveryId::new(),
-            kind,
+            kind: Kind::TEST,
+            phase,
             topic: Uuid::now_v7(),
             series: series.to_owned(),
             severity,
@@ -109,13 +122,13 @@ mod tests {
     }
 
     #[test]
-    fn an_end_is_announced_if_the_next_alert_is_not() {
-        let over = announced(Kind::AlertCleared, "one", Severity::Critical);
-        let next = announced(Kind::AlertRaised, "one", Severity::Notice);
+    fn an_end_is_announced_if_the_next_topic_is_not() {
+        let over = announced(Phase::Ended, "one", Severity::Critical);
+        let next = announced(Phase::Started, "one", Severity::Notice);
         let all = [over.clone(), next];
         assert!(is_replaced(&over, Severity::Notice, &all));
         assert!(!is_replaced(&over, Severity::Critical, &all));
-        let elsewhere = announced(Kind::AlertRaised, "another", Severity::Critical);
+        let elsewhere = announced(Phase::Started, "another", Severity::Critical);
         assert!(!is_replaced(
             &over,
             Severity::Notice,

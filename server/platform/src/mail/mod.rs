@@ -1,11 +1,11 @@
-//! Mail: letters about alerts to the recipients of an operator.
+//! Mail: letters to the recipients of an operator, about topics that have a severity.
 //!
 //! Invariants:
 //!
 //! - Letters are queued and sent by [`crate::outbox`]. A letter that the relay accepted is not
 //!   sent again. A letter whose response was lost is sent again with the same message id.
-//! - A recipient gets a letter when an alert reaches the recipient's severity and when it gets
-//!   worse than in the last letter. A last letter follows when the alert is over or sinks below
+//! - A recipient gets a letter when a topic reaches the recipient's severity and when it gets
+//!   worse than in the last letter. A last letter follows when the topic ends or sinks below
 //!   that severity. New details alone cause no letter.
 //! - Text of users cannot form a header: names are encoded, and line breaks are removed.
 
@@ -17,7 +17,7 @@ mod relay;
 mod send;
 mod store;
 
-pub use announce::{Announcement, announce};
+pub use announce::{Announcement, Phase, announce};
 pub use letter::{Letter, LetterItem, header, one_line, wrapped};
 pub use mailing_list::{Content, File, FileReference, Files, FindAddress, LoadFiles, MailingList};
 pub use recipient::address;
@@ -170,7 +170,7 @@ async fn test_recipient(
     must_be_set_up(&app)?;
     let message = Message {
         id: DeliveryId::new(),
-        kind: Kind::Test,
+        kind: Kind::TEST,
         order: None,
         body: serde_json::to_string(&Letter::test())?,
     };

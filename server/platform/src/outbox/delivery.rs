@@ -1,5 +1,6 @@
 //! Messages, and deliveries as the API shows them.
 
+use super::kind::Kind;
 use crate::ids::{DeliveryId, OrderId};
 use crate::time::Time;
 use serde::{Deserialize, Serialize};
@@ -14,111 +15,6 @@ pub enum Channel {
     Webhook,
     /// Mail to a person.
     Mail,
-}
-
-/// Subject of a message.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema, sqlx::Type,
-)]
-#[sqlx(type_name = "text")]
-#[schema(as = MessageKind)]
-pub enum Kind {
-    /// An alert is new, or was acknowledged and got worse.
-    #[serde(rename = "alert.raised")]
-    #[sqlx(rename = "alert.raised")]
-    AlertRaised,
-    /// The severity of an alert changed.
-    #[serde(rename = "alert.updated")]
-    #[sqlx(rename = "alert.updated")]
-    AlertUpdated,
-    /// Someone acknowledged an alert.
-    #[serde(rename = "alert.acknowledged")]
-    #[sqlx(rename = "alert.acknowledged")]
-    AlertAcknowledged,
-    /// An alert is over.
-    #[serde(rename = "alert.cleared")]
-    #[sqlx(rename = "alert.cleared")]
-    AlertCleared,
-    /// A work order is offered to a firm.
-    #[serde(rename = "order.offered")]
-    #[sqlx(rename = "order.offered")]
-    OrderOffered,
-    /// A firm or an operator accepted, declined, or proposed other terms.
-    #[serde(rename = "order.answered")]
-    #[sqlx(rename = "order.answered")]
-    OrderAnswered,
-    /// An offer was not answered in time.
-    #[serde(rename = "order.lapsed")]
-    #[sqlx(rename = "order.lapsed")]
-    OrderLapsed,
-    /// An offer is withdrawn: another firm has the order, or it is cancelled.
-    #[serde(rename = "order.withdrawn")]
-    #[sqlx(rename = "order.withdrawn")]
-    OrderWithdrawn,
-    /// Someone wrote a message about an order.
-    #[serde(rename = "order.message")]
-    #[sqlx(rename = "order.message")]
-    OrderMessage,
-    /// The operator proposes another time to the firm that has an order.
-    #[serde(rename = "order.retime_proposed")]
-    #[sqlx(rename = "order.retime_proposed")]
-    OrderRetimeProposed,
-    /// The port call of an order was moved or withdrawn.
-    #[serde(rename = "order.call_moved")]
-    #[sqlx(rename = "order.call_moved")]
-    OrderCallMoved,
-    /// The berth session of an order has progressed, or documents were added.
-    #[serde(rename = "order.updated")]
-    #[sqlx(rename = "order.updated")]
-    OrderUpdated,
-    /// The adjuster has completed and signed the order.
-    #[serde(rename = "order.completed")]
-    #[sqlx(rename = "order.completed")]
-    OrderCompleted,
-    /// Deviations at sea agree with the prediction.
-    #[serde(rename = "order.verified")]
-    #[sqlx(rename = "order.verified")]
-    OrderVerified,
-    /// A deviation at sea disagrees with the prediction.
-    #[serde(rename = "order.failed")]
-    #[sqlx(rename = "order.failed")]
-    OrderFailed,
-    /// The order is closed.
-    #[serde(rename = "order.closed")]
-    #[sqlx(rename = "order.closed")]
-    OrderClosed,
-    /// The order is cancelled.
-    #[serde(rename = "order.cancelled")]
-    #[sqlx(rename = "order.cancelled")]
-    OrderCancelled,
-    /// Notification mail to a user: one notification, or a digest of several.
-    #[serde(rename = "notification")]
-    #[sqlx(rename = "notification")]
-    Notification,
-    /// Monthly report by mail.
-    #[serde(rename = "report")]
-    #[sqlx(rename = "report")]
-    Report,
-    /// A user requested a test.
-    #[serde(rename = "test")]
-    #[sqlx(rename = "test")]
-    Test,
-}
-
-impl Kind {
-    /// Checks whether the message concerns a work order: firms receive no other kind.
-    pub fn is_of_order(self) -> bool {
-        !matches!(
-            self,
-            Kind::AlertRaised
-                | Kind::AlertUpdated
-                | Kind::AlertAcknowledged
-                | Kind::AlertCleared
-                | Kind::Notification
-                | Kind::Report
-                | Kind::Test
-        )
-    }
 }
 
 /// Message to be delivered.
@@ -153,7 +49,8 @@ pub struct Delivery {
     /// Id of the event, which the body of a webhook contains too.
     pub id: DeliveryId,
     /// Subject of the message.
-    pub kind: Kind,
+    #[schema(value_type = Kind)]
+    pub kind: String,
     /// State of the delivery.
     pub state: DeliveryState,
     /// Creation time of the message.

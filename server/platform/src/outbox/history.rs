@@ -1,6 +1,6 @@
 //! History of a receiver's messages.
 
-use super::delivery::{Delivery, DeliveryList, DeliveryState, Filter, Kind, Message};
+use super::delivery::{Delivery, DeliveryList, DeliveryState, Filter, Message};
 use super::queue::queue;
 use crate::audit::RequestContext;
 use crate::db::{Db, execute, row, rows};
@@ -14,7 +14,7 @@ use uuid::Uuid;
 #[derive(sqlx::FromRow)]
 struct Row {
     id: DeliveryId,
-    kind: Kind,
+    kind: String,
     state: DeliveryState,
     created_at: Time,
     attempts: i64,

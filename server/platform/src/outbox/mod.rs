@@ -11,12 +11,14 @@
 
 mod delivery;
 mod history;
+mod kind;
 mod queue;
 mod receivers;
 mod worker;
 
-pub use delivery::{Channel, Delivery, DeliveryList, Filter, Kind, Message};
+pub use delivery::{Channel, Delivery, DeliveryList, Filter, Message};
 pub use history::{list, queue_one, send_again};
+pub use kind::Kind;
 pub use queue::{Claimed, queue};
 pub use receivers::{delete, enable, ensure, forget, insert};
 pub use worker::{Attempt, Carrier, Sent, run, step};

@@ -64,7 +64,7 @@ pub async fn queue(tx: &mut Tx, receiver: Uuid, message: &Message, now: Time) ->
         receiver,
         number,
         message.id,
-        message.kind,
+        message.kind.name(),
         message.body.as_str(),
         now,
         message.order

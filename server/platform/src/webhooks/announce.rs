@@ -15,7 +15,7 @@ pub async fn announce(tx: &mut Tx, tenant: Tenant, messages: &[Message], now: Ti
     for (webhook, kinds) in store::list_subscriptions(tx, tenant).await? {
         for message in messages
             .iter()
-            .filter(|message| kinds.0.contains(&message.kind))
+            .filter(|message| kinds.includes(message.kind))
         {
             outbox::queue(tx, webhook, message, now).await?;
         }

@@ -8,11 +8,13 @@
 //!   configured to allow it.
 
 mod announce;
+mod kinds;
 mod send;
 mod store;
 mod webhook;
 
 pub use announce::announce;
+pub use kinds::{Audience, DeclaredKind, MessageKinds};
 pub use send::{SIGNATURE_HEADER, Sender};
 
 use crate::access::{PartyReader, PartyWriter};
@@ -38,6 +40,7 @@ const SECRET_PREFIX: &str = "bns_";
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    MessageKinds: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new()
@@ -73,13 +76,15 @@ async fn list_webhooks(
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn create_webhook(
     State(app): State<App>,
+    State(kinds): State<MessageKinds>,
     request: RequestContext,
     writer: PartyWriter,
     key: Key,
     Valid(new): Valid<NewWebhook>,
 ) -> Result<(StatusCode, Json<MadeWebhook>)> {
     let request_hash = idempotency::request_hash("webhook", &new)?;
-    let new = new.checked(writer.tenant, app.config.webhooks.reach())?;
+    let kinds = new.find_kinds(&kinds)?;
+    let new = new.checked(&kinds, writer.tenant, app.config.webhooks.reach())?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
     let wanted = WebhookId::new();
@@ -119,13 +124,15 @@ async fn find_webhook(
               (status = 422, body = Problem)))]
 async fn change_webhook(
     State(app): State<App>,
+    State(kinds): State<MessageKinds>,
     request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<WebhookId>,
     Valid(wanted): Valid<NewWebhook>,
 ) -> Result<Json<Webhook>> {
+    let kinds = wanted.find_kinds(&kinds)?;
     store::must_find(&app.db, writer.tenant, id).await?;
-    let wanted = wanted.checked(writer.tenant, app.config.webhooks.reach())?;
+    let wanted = wanted.checked(&kinds, writer.tenant, app.config.webhooks.reach())?;
     let mut tx = request.begin().await?;
     store::change(&mut tx, writer.tenant, id, &wanted).await?;
     tx.commit().await?;
@@ -165,10 +172,10 @@ async fn test_webhook(
     store::must_find(&app.db, writer.tenant, id).await?;
     let now = app.clock.now();
     let message = DeliveryId::new();
-    let body = json!({ "id": message, "kind": Kind::Test, "at": now }).to_string();
+    let body = json!({ "id": message, "kind": Kind::TEST, "at": now }).to_string();
     let message = Message {
         id: message,
-        kind: Kind::Test,
+        kind: Kind::TEST,
         order: None,
         body,
     };

@@ -1,5 +1,6 @@
 //! Webhooks, as requested and as shown.
 
+use super::kinds::{Audience, DeclaredKind, MessageKinds};
 use crate::error::{Error, Result};
 use crate::http::is_control;
 use crate::ids::WebhookId;
@@ -13,7 +14,14 @@ use utoipa::ToSchema;
 /// Kinds of messages for a webhook, as JSON in its row.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub(super) struct Kinds(pub(super) Vec<Kind>);
+pub(super) struct Kinds(Vec<String>);
+
+impl Kinds {
+    /// Checks whether messages of a kind are sent.
+    pub(super) fn includes(&self, kind: Kind) -> bool {
+        self.0.iter().any(|name| name == kind.name())
+    }
+}
 
 impl TryFrom<String> for Kinds {
     type Error = serde_json::Error;
@@ -32,7 +40,8 @@ pub(super) struct NewWebhook {
     pub(super) url: String,
     /// Kinds of messages to send.
     #[schema(example = json!(["alert.raised", "alert.cleared"]))]
-    pub(super) kinds: Vec<Kind>,
+    #[schema(value_type = Vec<Kind>)]
+    pub(super) kinds: Vec<String>,
     /// True if messages are sent; true by default.
     #[serde(default = "enabled")]
     pub(super) enabled: bool,
@@ -85,11 +94,28 @@ pub(super) struct WebhookList {
 }
 
 impl NewWebhook {
+    /// Returns the declared kinds that the webhook subscribes to.
+    ///
+    /// # Errors
+    /// When a name is not that of a kind.
+    pub(super) fn find_kinds(&self, declared: &MessageKinds) -> Result<Vec<DeclaredKind>> {
+        let invalid = |detail| Error::Invalid {
+            field: "body",
+            detail,
+        };
+        declared.find(&self.kinds).map_err(invalid)
+    }
+
     /// Returns the webhook with its kinds in order, if messages can be sent to it.
     ///
     /// # Errors
     /// When messages cannot be sent to it, or it subscribes to none.
-    pub(super) fn checked(mut self, tenant: Tenant, reach: Reach) -> Result<NewWebhook> {
+    pub(super) fn checked(
+        mut self,
+        kinds: &[DeclaredKind],
+        tenant: Tenant,
+        reach: Reach,
+    ) -> Result<NewWebhook> {
         let invalid = |field, detail| Err(Error::Invalid { field, detail });
         // Blanks at the ends come from copying. A blank inside might be skipped by a URL parser,
         // and the request would go elsewhere than to the address shown.
@@ -100,19 +126,17 @@ impl NewWebhook {
         if let Err(problem) = check_url(&self.url, reach) {
             return invalid("url", problem.to_string());
         }
-        self.kinds.sort_unstable();
-        self.kinds.dedup();
-        self.kinds
-            .retain(|kind| !matches!(kind, Kind::Test | Kind::Notification | Kind::Report));
-        if tenant.firm().is_some() && !self.kinds.iter().all(|kind| kind.is_of_order()) {
+        let is_for_firms = |kind: &DeclaredKind| kind.audience == Audience::OperatorsAndFirms;
+        if tenant.firm().is_some() && !kinds.iter().all(is_for_firms) {
             return invalid(
                 "kinds",
                 "a firm can only receive messages about work orders".to_owned(),
             );
         }
-        if self.kinds.is_empty() {
+        if kinds.is_empty() {
             return invalid("kinds", "is empty".to_owned());
         }
+        self.kinds = kinds.iter().map(|one| one.kind.name().to_owned()).collect();
         Ok(self)
     }
 }

@@ -1,9 +1,10 @@
 //! Receivers that accept a connection and do not respond.
 
+use binnacle_orders::work_orders::message_kinds;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::ids::{DeliveryId, OrderId};
 use binnacle_platform::outbound::Reach;
-use binnacle_platform::outbox::{self, Kind, Message, Sent};
+use binnacle_platform::outbox::{self, Message, Sent};
 use binnacle_platform::webhooks::Sender;
 use binnacle_server_testing::TestServer;
 use binnacle_server_testing::on_both;
@@ -89,7 +90,7 @@ async fn a_slow_receiver_gets_one_delivery_at_a_time(server: TestServer) {
     for _ in 0..2 {
         let message = Message {
             id: DeliveryId::new(),
-            kind: Kind::OrderUpdated,
+            kind: message_kinds::UPDATED,
             order: Some(OrderId::new()),
             body: "{}".to_owned(),
         };

@@ -1,6 +1,7 @@
 //! Cancellation of an order.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::message_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::state::State;
 use binnacle_platform::notices::Kind;
@@ -22,7 +23,7 @@ impl Event for Cancelled {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderCancelled)
+        Some(message_kinds::CANCELLED)
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {

@@ -1,6 +1,7 @@
 //! Closing of an order.
 
 use crate::work_orders::events::event::Event;
+use crate::work_orders::message_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::state::State;
 use binnacle_platform::outbox;
@@ -22,6 +23,6 @@ impl Event for Closed {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderClosed)
+        Some(message_kinds::CLOSED)
     }
 }

@@ -1,6 +1,7 @@
 //! Completion of the adjustment, signed by the adjuster.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::message_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::signed_record::Completion;
 use crate::work_orders::state::State;
@@ -14,7 +15,7 @@ impl Event for Completion {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderCompleted)
+        Some(message_kinds::COMPLETED)
     }
 
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {

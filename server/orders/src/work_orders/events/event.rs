@@ -1,5 +1,6 @@
 //! Duties of every event: state change, words, webhook and audience.
 
+use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
@@ -37,7 +38,7 @@ pub(crate) trait Event {
 
     /// Kind of the webhook message; `None` where none is sent.
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderUpdated)
+        Some(message_kinds::UPDATED)
     }
 
     /// Headline for the operator's people; `None` where they are not notified.

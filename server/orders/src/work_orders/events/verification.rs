@@ -1,6 +1,7 @@
 //! Verdict of headings at sea on the prediction.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::message_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::sea_verification::SeaVerification;
 use crate::work_orders::state::State;
@@ -20,9 +21,9 @@ impl Event for SeaVerification {
 
     fn webhook(&self) -> Option<outbox::Kind> {
         Some(match self.verification {
-            Verification::Passed { .. } => outbox::Kind::OrderVerified,
-            Verification::MoreNeeded { .. } => outbox::Kind::OrderUpdated,
-            Verification::Alarm { .. } => outbox::Kind::OrderFailed,
+            Verification::Passed { .. } => message_kinds::VERIFIED,
+            Verification::MoreNeeded { .. } => message_kinds::UPDATED,
+            Verification::Alarm { .. } => message_kinds::FAILED,
         })
     }
 

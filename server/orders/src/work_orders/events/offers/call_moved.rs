@@ -1,6 +1,7 @@
 //! Change of the order's port call, announced to one firm.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::message_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::{Exchange, NamedFirm};
 use crate::work_orders::payload::port_call::{CallChange, CallFit, in_both_zones, zone_of};
@@ -34,7 +35,7 @@ impl Event for CallMoved {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderCallMoved)
+        Some(message_kinds::CALL_MOVED)
     }
 
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {

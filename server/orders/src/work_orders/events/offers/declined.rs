@@ -1,6 +1,7 @@
 //! Refusal of an offer, or return of the order, by a firm.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
@@ -24,7 +25,7 @@ impl Event for Declined {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderAnswered)
+        Some(message_kinds::ANSWERED)
     }
 
     fn operator_headline(&self, circumstances: Circumstances) -> Option<Headline> {

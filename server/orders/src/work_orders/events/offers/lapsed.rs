@@ -1,6 +1,7 @@
 //! Lapse of an offer, or of a proposal, without an answer.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
@@ -24,7 +25,7 @@ impl Event for Lapsed {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderLapsed)
+        Some(message_kinds::LAPSED)
     }
 
     fn operator_headline(&self, circumstances: Circumstances) -> Option<Headline> {

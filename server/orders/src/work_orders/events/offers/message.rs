@@ -1,6 +1,7 @@
 //! Message between the operator and a firm.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::message_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
 use binnacle_platform::notices::Kind;
@@ -20,7 +21,7 @@ impl Event for MessageSent {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderMessage)
+        Some(message_kinds::MESSAGE)
     }
 
     fn operator_headline(&self, circumstances: Circumstances) -> Option<Headline> {

@@ -1,6 +1,7 @@
 //! Offer sent to a firm.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
@@ -24,7 +25,7 @@ impl Event for OfferSent {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderOffered)
+        Some(message_kinds::OFFERED)
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {

@@ -1,6 +1,7 @@
 //! Proposal of other terms by a firm, and the operator's answer.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
@@ -35,7 +36,7 @@ impl Event for Proposed {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderAnswered)
+        Some(message_kinds::ANSWERED)
     }
 
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
@@ -75,7 +76,7 @@ impl Event for ProposalAccepted {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderAnswered)
+        Some(message_kinds::ANSWERED)
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
@@ -98,7 +99,7 @@ impl Event for ProposalDeclined {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderAnswered)
+        Some(message_kinds::ANSWERED)
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {

@@ -3,6 +3,7 @@
 //! Invariant: the agreed time stands until the firm accepts.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
@@ -41,7 +42,7 @@ impl Event for RetimeProposed {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderRetimeProposed)
+        Some(message_kinds::RETIME_PROPOSED)
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
@@ -73,7 +74,7 @@ impl Event for RetimeAccepted {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderAnswered)
+        Some(message_kinds::ANSWERED)
     }
 
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
@@ -99,7 +100,7 @@ impl Event for RetimeDeclined {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderAnswered)
+        Some(message_kinds::ANSWERED)
     }
 
     fn operator_headline(&self, circumstances: Circumstances) -> Option<Headline> {
@@ -129,7 +130,7 @@ impl Event for RetimeLapsed {
     }
 
     fn webhook(&self) -> Option<outbox::Kind> {
-        Some(outbox::Kind::OrderLapsed)
+        Some(message_kinds::LAPSED)
     }
 
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
