@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// Writes beside the file and then renames, so that a partial table never looks complete.
 ///
 /// # Errors
-/// When `content` fails, or when the file cannot be written.
+/// Fails when `content` fails, or when the file cannot be written.
 pub(crate) fn write_atomically<T>(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> anyhow::Result<T>,

@@ -39,7 +39,7 @@ struct Report {
 /// are distinguished by talker and sentence.
 ///
 /// # Errors
-/// When a file cannot be read, or has no sentence in it.
+/// Fails when a file cannot be read, or has no sentence in it.
 pub(crate) fn replay(
     files: &[PathBuf],
     roles: &RolesConfig,

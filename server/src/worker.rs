@@ -61,7 +61,7 @@ pub async fn run(app: App) {
 /// Does one job, if one is due.
 ///
 /// # Errors
-/// When the queue cannot be reached; a job that fails is not an error here.
+/// Fails when the queue cannot be reached; a job that fails is not an error here.
 pub async fn step(app: &App) -> anyhow::Result<Option<Worked>> {
     let Some(job) = analysis_queue::claim(&app.db, app.clock.now().into()).await? else {
         return Ok(None);

@@ -28,7 +28,7 @@ pub struct Correction {
 /// Listens until `count` complete corrections have arrived.
 ///
 /// # Errors
-/// When they do not arrive `within` the time, or a sentence is wrong.
+/// Fails when they do not arrive `within` the time, or a sentence is wrong.
 pub async fn corrections(
     agent: SocketAddr,
     count: usize,

@@ -72,7 +72,7 @@ impl Feed {
     /// Listens on a free port for an agent on this machine.
     ///
     /// # Errors
-    /// When there is no port.
+    /// Fails when there is no port.
     pub async fn start(
         source: impl AsyncRead + Send + Unpin + 'static,
         pace: Pace,
@@ -83,7 +83,7 @@ impl Feed {
     /// Listens at an address.
     ///
     /// # Errors
-    /// When there is no such address, or no port.
+    /// Fails when there is no such address, or no port.
     pub async fn start_at(
         address: IpAddr,
         source: impl AsyncRead + Send + Unpin + 'static,
@@ -121,7 +121,7 @@ impl Feed {
     /// Changes the pace.
     ///
     /// # Errors
-    /// When the feed has failed.
+    /// Fails when the feed has failed.
     pub fn set_pace(&self, pace: Pace) -> Result<()> {
         self.pace.send(pace).context("the feed has ended")
     }
@@ -130,7 +130,7 @@ impl Feed {
     /// time.
     ///
     /// # Errors
-    /// When the feed has failed.
+    /// Fails when the feed has failed.
     pub fn set_clock(&self, off_s: f64) -> Result<()> {
         self.clock.send(off_s).context("the feed has ended")
     }
@@ -138,7 +138,7 @@ impl Feed {
     /// Waits until the bridge's progress is `enough`.
     ///
     /// # Errors
-    /// When it is not `within` the time, or the feed failed.
+    /// Fails when it is not `within` the time, or the feed failed.
     pub async fn reached(
         &mut self,
         within: Duration,

@@ -31,7 +31,7 @@ pub struct Spool {
 /// write on a full disk fails.
 ///
 /// # Errors
-/// When there is no spool, or its agent holds a lock.
+/// Fails when there is no spool, or its agent holds a lock.
 pub async fn clear_journal(ship: &Ship) -> Result<()> {
     let options = SqliteConnectOptions::new().filename(ship.data_dir().join("spool.db"));
     let mut db = SqliteConnection::connect_with(&options).await?;
@@ -59,7 +59,7 @@ impl Spool {
     /// Reads the spool as it is now.
     ///
     /// # Errors
-    /// When there is none, or it cannot be read.
+    /// Fails when there is none, or it cannot be read.
     pub async fn read(ship: &Ship) -> Result<Spool> {
         let file = ship.data_dir().join("spool.db");
         let options = SqliteConnectOptions::new().filename(&file).read_only(true);
@@ -136,7 +136,7 @@ pub type Logged = (Uuid, i64, Vec<u8>);
 /// Reads the server's log of a vessel's batches.
 ///
 /// # Errors
-/// When the database cannot be read.
+/// Fails when the database cannot be read.
 pub async fn batch_log(database: &Database, vessel: Uuid) -> Result<Vec<Logged>> {
     const SQL: &str =
         "SELECT stream, seq, bytes FROM batches WHERE vessel_id = $1 ORDER BY stream, seq";
@@ -154,7 +154,7 @@ pub async fn batch_log(database: &Database, vessel: Uuid) -> Result<Vec<Logged>>
 /// acknowledged are those of the server, to the checksum.
 ///
 /// # Errors
-/// When they differ, or a batch was refused.
+/// Fails when they differ, or a batch was refused.
 pub async fn ensure_records_match(
     server: &ServerProcess,
     vessel: Uuid,
@@ -173,7 +173,7 @@ pub async fn ensure_records_match(
 /// server may have more, when a response or its record was lost.
 ///
 /// # Errors
-/// When one is missing.
+/// Fails when one is missing.
 pub async fn ensure_acknowledged_is_stored(
     server: &ServerProcess,
     vessel: Uuid,
@@ -208,7 +208,7 @@ pub fn checksum(frame: &[u8]) -> u32 {
 /// Returns the samples in the server's log, each once, in order of time.
 ///
 /// # Errors
-/// When two different samples share windows.
+/// Fails when two different samples share windows.
 pub async fn stored_samples(server: &ServerProcess, vessel: Uuid) -> Result<Vec<Sample>> {
     let mut samples = Vec::new();
     for (_, _, bytes) in batch_log(server.database(), vessel).await? {

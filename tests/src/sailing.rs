@@ -25,7 +25,7 @@ pub fn day(day: f64) -> Timestamp {
 /// Sails to an instant; returns when the agent has read the sentences up to it.
 ///
 /// # Errors
-/// When the ship does not get there.
+/// Fails when the ship does not get there.
 pub async fn sail_until(voyage: &mut Voyage, ship: &Ship, time: Timestamp) -> Result<()> {
     voyage.feed.set_pace(Pace::FastUntil(time))?;
     let there = |progress: &Progress| *progress == Progress::Ended || progress.time() >= Some(time);
@@ -52,7 +52,7 @@ fn ship_time(status: &Value) -> Result<Option<Timestamp>> {
 /// Waits until no batch waits in the spool.
 ///
 /// # Errors
-/// When a batch keeps waiting.
+/// Fails when a batch keeps waiting.
 pub async fn wait_until_uploaded(ship: &Ship) -> Result<Spool> {
     eventually("all batches are acknowledged", TIMEOUT, async || {
         let spool = Spool::read(ship).await?;

@@ -38,7 +38,7 @@ impl ServerProcess {
     /// Starts a server on a new database.
     ///
     /// # Errors
-    /// When it does not start.
+    /// Fails when it does not start.
     pub async fn start(engine: Engine, folder: &Path) -> Result<ServerProcess> {
         ServerProcess::open(engine, folder, Ipv4Addr::LOCALHOST.into(), None).await
     }
@@ -46,7 +46,7 @@ impl ServerProcess {
     /// Starts a server on SQLite at an address, with https.
     ///
     /// # Errors
-    /// When it does not start.
+    /// Fails when it does not start.
     pub async fn start_with_tls(
         folder: &Path,
         address: IpAddr,
@@ -86,7 +86,7 @@ impl ServerProcess {
     /// Creates an admin of another operator, and returns the session cookie.
     ///
     /// # Errors
-    /// When the server refuses.
+    /// Fails when the server refuses.
     pub async fn sign_in_other_operator(&self) -> Result<String> {
         let email = "stranger@elsewhere.example";
         self.create_admin(email).await?;
@@ -120,7 +120,7 @@ impl ServerProcess {
     /// Runs a command of the server's program on its database.
     ///
     /// # Errors
-    /// When it fails.
+    /// Fails when it fails.
     pub async fn admin(&self, arguments: &[&str], input: &str) -> Result<String> {
         let mut command = program::command("binnacle-server")?;
         command
@@ -166,7 +166,7 @@ impl ServerProcess {
     /// Kills the server with signal 9 and starts it again on the same port.
     ///
     /// # Errors
-    /// When it had ended by itself, or does not start again.
+    /// Fails when it had ended by itself, or does not start again.
     pub async fn kill_and_restart(&mut self) -> Result<()> {
         self.restart_after(|| Ok(())).await
     }
@@ -175,7 +175,7 @@ impl ServerProcess {
     /// same port.
     ///
     /// # Errors
-    /// When it had ended by itself, does not start again, or `meanwhile` fails.
+    /// Fails when it had ended by itself, does not start again, or `meanwhile` fails.
     pub async fn restart_after(&mut self, meanwhile: impl FnOnce() -> Result<()>) -> Result<()> {
         let process = self.process.take().context("the server runs")?;
         process.kill().await?;
@@ -188,7 +188,7 @@ impl ServerProcess {
     /// Returns the number of analyses waiting or under way.
     ///
     /// # Errors
-    /// When the server does not tell.
+    /// Fails when the server does not tell.
     pub async fn jobs(&self) -> Result<u64> {
         let metrics = self.http.get(format!("{}/metrics", self.url));
         let metrics = metrics
@@ -209,7 +209,7 @@ impl ServerProcess {
     /// Fails unless the server runs and is healthy.
     ///
     /// # Errors
-    /// When it is not.
+    /// Fails when it is not.
     pub async fn assert_healthy(&mut self) -> Result<()> {
         let process = self.process.as_mut().context("the server runs")?;
         ensure!(
@@ -229,7 +229,7 @@ impl ServerProcess {
     /// Stops the server and removes its database.
     ///
     /// # Errors
-    /// When the server had ended by itself.
+    /// Fails when the server had ended by itself.
     pub async fn finish(mut self) -> Result<()> {
         let process = self.process.take().context("the server runs")?;
         ensure!(
@@ -283,7 +283,7 @@ impl ServerProcess {
     /// one.
     ///
     /// # Errors
-    /// When the response is neither.
+    /// Fails when the response is neither.
     pub async fn find(&self, path: &str) -> Result<Option<Value>> {
         let answer = self
             .with_cookie(Method::GET, path, &self.cookie)
@@ -298,7 +298,7 @@ impl ServerProcess {
     /// Returns the resource at a path as the admin.
     ///
     /// # Errors
-    /// When it is missing.
+    /// Fails when it is missing.
     pub async fn get(&self, path: &str) -> Result<Value> {
         self.find(path)
             .await?
@@ -308,7 +308,7 @@ impl ServerProcess {
     /// Posts as the admin.
     ///
     /// # Errors
-    /// When the server refuses.
+    /// Fails when the server refuses.
     pub async fn post(&self, path: &str, body: &Value) -> Result<Value> {
         let request = self
             .with_cookie(Method::POST, path, &self.cookie)
@@ -319,7 +319,7 @@ impl ServerProcess {
     /// Returns a list with all its pages.
     ///
     /// # Errors
-    /// When a page is refused.
+    /// Fails when a page is refused.
     pub async fn list(&self, path: &str) -> Result<Vec<Value>> {
         let mut items = Vec::new();
         let mut after = String::new();
@@ -341,7 +341,7 @@ impl ServerProcess {
     /// enrolment code.
     ///
     /// # Errors
-    /// When the server refuses.
+    /// Fails when the server refuses.
     pub async fn create_vessel(&self, name: &str) -> Result<(String, String)> {
         let vessel = self.post("/vessels", &json!({ "name": name })).await?;
         let id = vessel["id"].as_str().context("a vessel's id")?.to_owned();
@@ -352,7 +352,7 @@ impl ServerProcess {
     /// Creates an enrolment code for an agent of a vessel.
     ///
     /// # Errors
-    /// When the server refuses.
+    /// Fails when the server refuses.
     pub async fn enrolment_code(&self, vessel: &str) -> Result<String> {
         let answer = self
             .post(&format!("/vessels/{vessel}/agents"), &json!({}))

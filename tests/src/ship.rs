@@ -31,7 +31,7 @@ impl Ship {
     /// returns.
     ///
     /// # Errors
-    /// When the folder cannot be written.
+    /// Fails when the folder cannot be written.
     pub fn new(name: &str, parent: &Path, feed: SocketAddr) -> Result<Ship> {
         Ship::with_uplink(name, parent, feed, FAST_UPLINK)
     }
@@ -39,7 +39,7 @@ impl Ship {
     /// Creates a ship with other lines in `[uplink]`.
     ///
     /// # Errors
-    /// When the folder cannot be written.
+    /// Fails when the folder cannot be written.
     pub fn with_uplink(name: &str, parent: &Path, feed: SocketAddr, uplink: &str) -> Result<Ship> {
         let folder = parent.join(name);
         std::fs::create_dir_all(&folder)?;
@@ -107,7 +107,7 @@ stale_s = 15
     /// Exchanges a code for the agent's token and stream.
     ///
     /// # Errors
-    /// When the agent or the server refuses.
+    /// Fails when the agent or the server refuses.
     pub async fn enrol(&self, server: &str, code: &str) -> Result<()> {
         let mut command = self.command()?;
         command
@@ -120,7 +120,7 @@ stale_s = 15
     /// Starts the agent.
     ///
     /// # Errors
-    /// When it cannot be started.
+    /// Fails when it cannot be started.
     pub fn start(&mut self) -> Result<()> {
         ensure!(
             self.agent.is_none(),
@@ -138,7 +138,7 @@ stale_s = 15
     /// the corrected headings.
     ///
     /// # Errors
-    /// When it ends instead, or takes too long.
+    /// Fails when it ends instead, or takes too long.
     pub async fn ready(&mut self) -> Result<SocketAddr> {
         let agent = self.agent.as_mut().context("the agent runs")?;
         eventually(format!("{} is ready", self.name), START, async || {
@@ -152,7 +152,7 @@ stale_s = 15
     /// Returns the address of a ready agent's local page.
     ///
     /// # Errors
-    /// When it is not ready.
+    /// Fails when it is not ready.
     pub fn page(&mut self) -> Result<SocketAddr> {
         let agent = self.agent.as_mut().context("the agent runs")?;
         address_in(&agent.log(), "page").context("the agent is not ready")
@@ -161,7 +161,7 @@ stale_s = 15
     /// Returns the output of `status --json`.
     ///
     /// # Errors
-    /// When it fails.
+    /// Fails when it fails.
     pub async fn status(&self) -> Result<Value> {
         let mut command = self.command()?;
         command
@@ -174,7 +174,7 @@ stale_s = 15
     /// Returns the agent's peak memory, in kilobytes.
     ///
     /// # Errors
-    /// When the system does not tell.
+    /// Fails when the system does not tell.
     pub fn peak_memory_kb(&mut self) -> Result<u64> {
         let agent = self.agent.as_mut().context("the agent runs")?;
         let id = agent.child().id().context("the agent has ended")?;
@@ -187,7 +187,7 @@ stale_s = 15
     /// Waits until the agent has failed by itself, and returns its log.
     ///
     /// # Errors
-    /// When it does not end, or ends without a failure.
+    /// Fails when it does not end, or ends without a failure.
     pub async fn fails(&mut self) -> Result<String> {
         let mut agent = self.agent.take().context("the agent runs")?;
         let ended = timeout(START, agent.child().wait()).await;
@@ -203,7 +203,7 @@ stale_s = 15
     /// Kills the agent with signal 9.
     ///
     /// # Errors
-    /// When it had ended by itself.
+    /// Fails when it had ended by itself.
     pub async fn kill(&mut self) -> Result<()> {
         let agent = self.agent.take().context("the agent runs")?;
         ensure!(
@@ -217,7 +217,7 @@ stale_s = 15
     /// Asks the agent to end, and waits until it has.
     ///
     /// # Errors
-    /// When it does not end, or fails.
+    /// Fails when it does not end, or fails.
     pub async fn stop(&mut self) -> Result<()> {
         let mut agent = self.agent.take().context("the agent runs")?;
         let id = agent.child().id().context("it has ended by itself")?;
@@ -233,7 +233,7 @@ stale_s = 15
     /// Kills the agent with signal 9 and starts it again.
     ///
     /// # Errors
-    /// When it had ended by itself, or does not start.
+    /// Fails when it had ended by itself, or does not start.
     pub async fn kill_and_restart(&mut self) -> Result<()> {
         self.kill().await?;
         self.start()
@@ -242,7 +242,7 @@ stale_s = 15
     /// Fails unless the agent runs.
     ///
     /// # Errors
-    /// When it does not.
+    /// Fails when it does not.
     pub fn assert_running(&mut self) -> Result<()> {
         let agent = self.agent.as_mut().context("the agent runs")?;
         ensure!(

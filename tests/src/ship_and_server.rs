@@ -77,7 +77,7 @@ impl ShipAndServer {
     /// Starts everything, with the voyage paused.
     ///
     /// # Errors
-    /// When something does not start.
+    /// Fails when something does not start.
     pub async fn start() -> Result<ShipAndServer> {
         ShipAndServer::start_with(Setup::default(), |_| Ok(())).await
     }
@@ -86,7 +86,7 @@ impl ShipAndServer {
     /// program runs.
     ///
     /// # Errors
-    /// When something does not start, or `prepare` fails.
+    /// Fails when something does not start, or `prepare` fails.
     pub async fn start_with(
         setup: Setup,
         prepare: impl FnOnce(&Ship) -> Result<()>,
@@ -136,7 +136,7 @@ impl ShipAndServer {
     /// read the sentences up to then.
     ///
     /// # Errors
-    /// When the ship does not get there.
+    /// Fails when the ship does not get there.
     pub async fn sail_until(&mut self, days: f64) -> Result<()> {
         sail_until(&mut self.voyage, &self.ship, day(days)).await?;
         if self.memory_kb.is_none() {
@@ -148,7 +148,7 @@ impl ShipAndServer {
     /// Waits until no batch waits in the spool, and the spool is idle.
     ///
     /// # Errors
-    /// When a batch keeps waiting.
+    /// Fails when a batch keeps waiting.
     pub async fn wait_until_uploaded(&self) -> Result<Spool> {
         wait_until_idle(&self.ship).await
     }
@@ -156,7 +156,7 @@ impl ShipAndServer {
     /// Waits until a value of `status --json` contains a text, and returns it.
     ///
     /// # Errors
-    /// When it does not.
+    /// Fails when it does not.
     pub async fn wait_for_status(&self, pointer: &str, wanted: &str) -> Result<String> {
         let what = format!("{pointer} says {wanted:?}");
         eventually(what, STATUS_TIMEOUT, async || {
@@ -175,7 +175,7 @@ impl ShipAndServer {
     /// unacknowledged samples are still on board.
     ///
     /// # Errors
-    /// When a check fails.
+    /// Fails when a check fails.
     pub async fn ensure_nothing_lost(&self, before: &Spool) -> Result<Spool> {
         let now = Spool::read(&self.ship).await?;
         ensure!(
@@ -189,7 +189,7 @@ impl ShipAndServer {
     /// spool are in samples, on the server or on board.
     ///
     /// # Errors
-    /// When one is missing.
+    /// Fails when one is missing.
     pub async fn ensure_no_window_lost(&self) -> Result<()> {
         eventually("every window is there", STATUS_TIMEOUT, async || {
             let status = self.ship.status().await?;
@@ -213,7 +213,7 @@ impl ShipAndServer {
     /// grown since its first day.
     ///
     /// # Errors
-    /// When a check fails, or a program failed.
+    /// Fails when a check fails, or a program failed.
     pub async fn check_and_stop(mut self) -> Result<()> {
         let spool = self.wait_until_uploaded().await?;
         ensure_acknowledged_is_stored(&self.server, self.vessel, &spool).await?;
@@ -235,7 +235,7 @@ impl ShipAndServer {
 /// Waits until no batch waits in a ship's spool, and the spool is idle.
 ///
 /// # Errors
-/// When a batch keeps waiting.
+/// Fails when a batch keeps waiting.
 pub async fn wait_until_idle(ship: &Ship) -> Result<Spool> {
     let mut last = (Spool::default(), Instant::now());
     eventually(
@@ -259,7 +259,7 @@ pub async fn wait_until_idle(ship: &Ship) -> Result<Spool> {
 /// Copies the files of a folder.
 ///
 /// # Errors
-/// When one cannot be read or written.
+/// Fails when one cannot be read or written.
 pub fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     std::fs::create_dir_all(to)?;
     for entry in std::fs::read_dir(from)? {

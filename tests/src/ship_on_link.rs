@@ -38,7 +38,7 @@ impl ShipOnLink {
     /// agent's settings.
     ///
     /// # Errors
-    /// When something does not start.
+    /// Fails when something does not start.
     pub async fn start(scenario: &str, uplink: &str) -> Result<ShipOnLink> {
         let folder = tempfile::tempdir()?;
         let mut satellite = Satellite::launch().await?;
@@ -82,7 +82,7 @@ impl ShipOnLink {
     /// it.
     ///
     /// # Errors
-    /// When the ship does not get there.
+    /// Fails when the ship does not get there.
     pub async fn sail_until(&mut self, time: Timestamp) -> Result<()> {
         sail_until(&mut self.voyage, &self.ship, time).await
     }
@@ -90,7 +90,7 @@ impl ShipOnLink {
     /// Waits until no batch waits in the spool.
     ///
     /// # Errors
-    /// When a batch keeps waiting.
+    /// Fails when a batch keeps waiting.
     pub async fn wait_until_uploaded(&self) -> Result<Spool> {
         wait_until_uploaded(&self.ship).await
     }
@@ -98,7 +98,7 @@ impl ShipOnLink {
     /// Waits until the server has analysed all its samples.
     ///
     /// # Errors
-    /// When it does not.
+    /// Fails when it does not.
     pub async fn wait_until_analysed(&self) -> Result<()> {
         eventually("all is analysed", TIMEOUT, async || {
             let waiting = self.server.jobs().await?;
@@ -115,7 +115,7 @@ impl ShipOnLink {
     /// everything.
     ///
     /// # Errors
-    /// When they do not match, or a program failed.
+    /// Fails when they do not match, or a program failed.
     pub async fn check_and_stop(mut self) -> Result<()> {
         let spool = self.wait_until_uploaded().await?;
         ensure_records_match(&self.server, self.vessel, &spool).await?;

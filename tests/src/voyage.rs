@@ -56,7 +56,7 @@ impl Voyage {
     /// machine.
     ///
     /// # Errors
-    /// When the simulator cannot be started.
+    /// Fails when the simulator cannot be started.
     pub async fn sail(scenario: &str, seed: u64, folder: &Path, pace: Pace) -> Result<Voyage> {
         Voyage::sail_at(Ipv4Addr::LOCALHOST.into(), scenario, seed, folder, pace).await
     }
@@ -64,7 +64,7 @@ impl Voyage {
     /// Sails a scenario with the instruments at an address.
     ///
     /// # Errors
-    /// When the simulator cannot be started, or there is no such address.
+    /// Fails when the simulator cannot be started, or there is no such address.
     pub async fn sail_at(
         instruments: IpAddr,
         scenario: &str,
@@ -103,7 +103,7 @@ impl Voyage {
     /// Returns the truth, once the voyage has ended.
     ///
     /// # Errors
-    /// When the simulator failed.
+    /// Fails when the simulator failed.
     pub async fn truth(&mut self) -> Result<Truth> {
         let status = self.simulator.wait().await?;
         ensure!(status.success(), "the simulator: {status}");

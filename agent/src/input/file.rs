@@ -22,7 +22,7 @@ pub(super) async fn session(path: &Path, link: &Link) -> io::Result<End> {
 /// recording's own times are observations for which [`crate::instruments::is_recorded_time`] holds.
 ///
 /// # Errors
-/// When the file cannot be read.
+/// Fails when the file cannot be read.
 pub(crate) fn replay(path: &Path, mut each: impl FnMut(&[Observation])) -> io::Result<Tally> {
     let mut file = File::open(path)?;
     let mut decoder = Decoder::new("replay".into(), Source::Recording);

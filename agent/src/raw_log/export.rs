@@ -41,7 +41,7 @@ const COLUMNS: [&str; 9] = [
 /// number.
 ///
 /// # Errors
-/// When there is no raw log, or the table cannot be written.
+/// Fails when there is no raw log, or the table cannot be written.
 pub(crate) fn export(raw_log: &Path, span: Span, out: &mut dyn Write) -> anyhow::Result<u64> {
     let name = raw_log.display().to_string();
     let mut file = File::open(raw_log).with_context(|| format!("{name}: there is no raw log"))?;

@@ -92,7 +92,7 @@ impl LogbookEntry {
     /// Validates the entry.
     ///
     /// # Errors
-    /// When it ends before it begins, or has a cargo and is of another kind.
+    /// Fails when it ends before it begins, or has a cargo and is of another kind.
     pub fn checked(self) -> Result<LogbookEntry, LogbookError> {
         let from = self.from;
         if let Some(to) = self.to.filter(|to| *to < from) {

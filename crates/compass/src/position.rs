@@ -39,7 +39,7 @@ impl Position {
     /// −180).
     ///
     /// # Errors
-    /// When either number is not finite or out of range.
+    /// Fails when either number is not finite or out of range.
     pub fn new(lat_deg: f64, lon_deg: f64) -> Result<Position, PositionError> {
         if !(-90.0..=90.0).contains(&lat_deg) {
             return Err(PositionError::Latitude(lat_deg));

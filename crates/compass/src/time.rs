@@ -40,7 +40,7 @@ impl Timestamp {
     /// Makes an instant from microseconds since 1970-01-01T00:00:00Z.
     ///
     /// # Errors
-    /// When it lies outside the years 1 to 9999.
+    /// Fails when it lies outside the years 1 to 9999.
     pub fn from_micros(micros: i64) -> Result<Timestamp, TimestampError> {
         if (FIRST_MICROS..=LAST_MICROS).contains(&micros) {
             Ok(Timestamp(micros))
@@ -52,7 +52,7 @@ impl Timestamp {
     /// Reads RFC 3339 with any offset.
     ///
     /// # Errors
-    /// When the text is not RFC 3339; a missing time zone has an error of its own.
+    /// Fails when the text is not RFC 3339; a missing time zone has an error of its own.
     pub fn parse(text: &str) -> Result<Timestamp, TimestampError> {
         let given = text.trim();
         if let Ok(parsed) = DateTime::parse_from_rfc3339(given) {

@@ -17,7 +17,7 @@ impl Instant {
     /// Parses RFC 3339.
     ///
     /// # Errors
-    /// When it is something else, with an error of its own for a missing zone.
+    /// Fails when it is something else, with an error of its own for a missing zone.
     pub fn parse(text: &str) -> Result<Instant, TimestampError> {
         Timestamp::parse(text).map(Instant)
     }

@@ -60,7 +60,7 @@ impl Zone {
     /// Finds the zone of a name.
     ///
     /// # Errors
-    /// When the database does not have it.
+    /// Fails when the database does not have it.
     pub fn find(name: &str) -> Result<Zone, ZoneError> {
         let found = all().binary_search_by(|zone| zone.name.as_str().cmp(name));
         found

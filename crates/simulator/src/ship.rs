@@ -89,7 +89,7 @@ impl Ship {
     /// Creates a ship of the scenario at the start of its voyage.
     ///
     /// # Errors
-    /// When the earth's field is not known for that time.
+    /// Fails when the earth's field is not known for that time.
     pub fn new(
         scenario: &Scenario,
         plan: &ShipPlan,

@@ -88,7 +88,7 @@ pub const fn capacity(messages: usize) -> usize {
 /// Splits a frame into messages of nearly equal size.
 ///
 /// # Errors
-/// When it is not a frame, or too large.
+/// Fails when it is not a frame, or too large.
 pub fn split(frame: &[u8]) -> Result<Vec<Vec<u8>>, BurstError> {
     let batch = codec::decode(frame)?;
     let mut head = StreamTag::from_stream(batch.stream).0.to_vec();
@@ -119,7 +119,7 @@ pub fn write_ack(ack: Ack) -> Vec<u8> {
 /// ignored.
 ///
 /// # Errors
-/// When the message is of another kind, or damaged.
+/// Fails when the message is of another kind, or damaged.
 pub fn read_ack(bytes: &[u8]) -> Result<Ack, BurstError> {
     let mut rest = content(ACK, bytes)?;
     Ok(Ack {
@@ -151,7 +151,7 @@ impl Joiner {
     /// again.
     ///
     /// # Errors
-    /// When the message cannot be read, or the joined bytes are not a frame;
+    /// Fails when the message cannot be read, or the joined bytes are not a frame;
     /// those bytes are then dropped.
     pub fn push(&mut self, bytes: &[u8]) -> Result<Option<Vec<u8>>, BurstError> {
         let mut rest = content(PART, bytes)?;

@@ -30,7 +30,7 @@ struct Fonts([Font; 2]);
 /// Writes sheets as a PDF document.
 ///
 /// # Errors
-/// When the PDF writer rejects a sheet, which is a mistake in the code.
+/// Fails when the PDF writer rejects a sheet, which is a mistake in the code.
 pub fn pdf(sheets: &[Sheet], about: &About) -> Result<Vec<u8>> {
     let fonts = Fonts::load()?;
     let mut document = Document::new();

@@ -115,7 +115,7 @@ impl Caller {
     /// Returns the session, for actions that need a person at a screen.
     ///
     /// # Errors
-    /// When the caller is a token.
+    /// Fails when the caller is a token.
     pub fn must_be_signed_in(&self) -> Result<SessionId> {
         self.session
             .ok_or(Error::Forbidden("a token cannot do this; sign in"))
@@ -140,7 +140,7 @@ impl Caller {
     /// Returns true if the caller's session or token is still valid.
     ///
     /// # Errors
-    /// When the database fails.
+    /// Fails when the database fails.
     pub async fn is_still_valid(&self, app: &App) -> Result<bool> {
         let now = app.clock.now().into();
         let found = match (self.session, self.token) {
@@ -160,7 +160,7 @@ impl Caller {
     /// Returns the caller's tenant.
     ///
     /// # Errors
-    /// When the caller has none, or a second factor is missing.
+    /// Fails when the caller has none, or a second factor is missing.
     pub fn party(&self) -> Result<Tenant> {
         self.must_have_second_factor()?;
         let none = "a platform admin has neither a fleet nor orders";
@@ -177,7 +177,7 @@ impl Caller {
     /// Refuses a read-only token.
     ///
     /// # Errors
-    /// When the caller is one.
+    /// Fails when the caller is one.
     pub fn must_not_only_read(&self) -> Result<()> {
         if self.read_only {
             return Err(Error::Forbidden("this token may only read"));

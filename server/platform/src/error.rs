@@ -110,7 +110,7 @@ impl DomainProblem {
     /// Adds the fields of a serialisable struct.
     ///
     /// # Panics
-    /// When the value is not a struct, which is a mistake in the code.
+    /// Panics when the value is not a struct, which is a mistake in the code.
     #[must_use]
     pub fn with(mut self, extra: &impl Serialize) -> DomainProblem {
         let value = serde_json::to_value(extra).expect("a struct of plain fields is JSON");

@@ -33,7 +33,7 @@ impl Key {
     /// this key.
     ///
     /// # Errors
-    /// When the key was used for another request.
+    /// Fails when the key was used for another request.
     pub async fn once(
         &self,
         tx: &mut Tx,
@@ -84,7 +84,7 @@ impl Key {
 /// Returns the hash that identifies a request, over the kind of resource and the content.
 ///
 /// # Errors
-/// When the content cannot be written as JSON.
+/// Fails when the content cannot be written as JSON.
 pub fn request_hash(what: &str, content: &impl Serialize) -> Result<Vec<u8>> {
     let content = serde_json::to_string(content)?;
     Ok(secret::hash(&format!("{what} {content}")))

@@ -86,7 +86,7 @@ pub fn new_password() -> String {
 /// Hashes a password; takes tens of milliseconds, so not for an async thread.
 ///
 /// # Errors
-/// When the machine has no random source or too little memory.
+/// Fails when the machine has no random source or too little memory.
 pub fn hash_password(password: &str) -> anyhow::Result<String> {
     let hash = Argon2::default().hash_password(password.as_bytes())?;
     Ok(hash.to_string())

@@ -24,7 +24,7 @@ use uuid::Uuid;
 /// Creates or revokes something and prints it as JSON.
 ///
 /// # Errors
-/// When the database cannot be reached.
+/// Fails when the database cannot be reached.
 pub fn admin(arguments: Admin) -> Result<ExitCode> {
     block_on(async {
         let db = Db::connect(&arguments.database.database_url, subscribers()).await?;

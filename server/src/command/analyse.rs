@@ -25,7 +25,7 @@ struct Analysed {
 /// Prints epochs, models, headings to sail next and the use of each sample, as JSON.
 ///
 /// # Errors
-/// When standard output cannot be written.
+/// Fails when standard output cannot be written.
 pub fn analyse(arguments: &Analyse) -> anyhow::Result<ExitCode> {
     print_result(find(arguments))
 }

@@ -19,7 +19,7 @@ use std::process::ExitCode;
 /// were refused; the others are stored nevertheless.
 ///
 /// # Errors
-/// When the database cannot be reached, or a response cannot be written.
+/// Fails when the database cannot be reached, or a response cannot be written.
 pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
     let mut messages = Vec::new();
     for path in &arguments.messages {

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 /// Prints the rows, as a table or as JSON.
 ///
 /// # Errors
-/// When standard output cannot be written.
+/// Fails when standard output cannot be written.
 pub fn deviation(arguments: &Deviation) -> anyhow::Result<ExitCode> {
     print_result(find(arguments).map(|rows| {
         if arguments.json {

@@ -20,7 +20,7 @@ struct FieldOutput {
 /// Prints the field as JSON.
 ///
 /// # Errors
-/// When standard output cannot be written.
+/// Fails when standard output cannot be written.
 pub fn field(arguments: &Field) -> anyhow::Result<ExitCode> {
     print_result(find(arguments).map(|found| json(&found)))
 }

@@ -26,7 +26,7 @@ struct FitResult {
 /// Prints the model, as a table or as JSON.
 ///
 /// # Errors
-/// When standard output cannot be written.
+/// Fails when standard output cannot be written.
 pub fn fit(arguments: &Fit) -> anyhow::Result<ExitCode> {
     print_result(find(arguments).map(|found| {
         if arguments.json {

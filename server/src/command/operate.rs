@@ -40,7 +40,7 @@ const MAIL_SENDERS: usize = 2;
 /// Serves until the process is stopped.
 ///
 /// # Errors
-/// When the database cannot be opened or the address is not available.
+/// Fails when the database cannot be opened or the address is not available.
 pub fn serve(config: Serve) -> Result<ExitCode> {
     start_log(config.log_json);
     block_on(async {
@@ -66,7 +66,7 @@ pub fn serve(config: Serve) -> Result<ExitCode> {
 /// Serves an application on a listener until a signal or its own `stopping` stops it.
 ///
 /// # Errors
-/// When the listener fails.
+/// Fails when the listener fails.
 pub async fn run<L>(app: App, listener: L) -> Result<()>
 where
     L: Listener<Addr = SocketAddr>,
@@ -155,7 +155,7 @@ fn announce(scheme: &str, listener: &impl Listener<Addr = SocketAddr>) -> Result
 /// Brings the schema up to date.
 ///
 /// # Errors
-/// When the database cannot be reached or a migration fails.
+/// Fails when the database cannot be reached or a migration fails.
 pub fn migrate(database: &Database) -> Result<ExitCode> {
     block_on(async {
         let db = Db::connect(&database.database_url, subscribers()).await?;
@@ -168,7 +168,7 @@ pub fn migrate(database: &Database) -> Result<ExitCode> {
 /// Prints the OpenAPI document.
 ///
 /// # Errors
-/// When standard output cannot be written.
+/// Fails when standard output cannot be written.
 pub fn openapi() -> Result<ExitCode> {
     let document = routes::openapi().to_pretty_json()?;
     super::print(&document)?;

@@ -28,7 +28,7 @@ struct Planned {
 /// Prints the best plans, or the reasons why there is none, as JSON.
 ///
 /// # Errors
-/// When standard output cannot be written.
+/// Fails when standard output cannot be written.
 pub fn plan(arguments: &Plan) -> anyhow::Result<ExitCode> {
     print_result(find(arguments))
 }

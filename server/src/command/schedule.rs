@@ -9,7 +9,7 @@ use std::process::ExitCode;
 /// Prints the schedule as JSON.
 ///
 /// # Errors
-/// When standard output cannot be written.
+/// Fails when standard output cannot be written.
 pub fn schedule(arguments: &Schedule) -> anyhow::Result<ExitCode> {
     print_result(find(arguments))
 }

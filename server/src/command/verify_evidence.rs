@@ -9,7 +9,7 @@ use std::process::ExitCode;
 /// Prints the facts of the archive, or its problems.
 ///
 /// # Errors
-/// When standard output cannot be written to.
+/// Fails when standard output cannot be written to.
 pub fn verify_evidence(arguments: &VerifyEvidence) -> anyhow::Result<ExitCode> {
     let file = arguments.file.display();
     let checked = fs::read(&arguments.file)

@@ -29,7 +29,7 @@ where
 /// Sets up the process's metrics.
 ///
 /// # Errors
-/// When the metrics are already installed.
+/// Fails when the metrics are already installed.
 pub fn install_metrics() -> anyhow::Result<PrometheusHandle> {
     let handle = PrometheusBuilder::new()
         .set_buckets(&[0.001, 0.01, 0.1, 1.0, 10.0])?

@@ -16,7 +16,7 @@ use utoipa::openapi::{OpenApi, RefOr, Response};
 /// Adds the fields that one domain's problems carry to the schema `Problem`.
 ///
 /// # Panics
-/// When `T` is not a struct, or the document has no `Problem`: a mistake in the code.
+/// Panics when `T` is not a struct, or the document has no `Problem`: a mistake in the code.
 pub(super) fn add_problem_fields<T: ToSchema>(document: &mut OpenApi) {
     let RefOr::T(Schema::Object(fields)) = T::schema() else {
         panic!("only a struct has fields");
@@ -60,7 +60,7 @@ pub(super) fn correct_schemas(document: &mut OpenApi) {
 /// Lists the values that a schema of names allows.
 ///
 /// # Panics
-/// When the document has no such schema: a mistake in the code.
+/// Panics when the document has no such schema: a mistake in the code.
 pub(super) fn list_values(
     document: &mut OpenApi,
     name: &str,

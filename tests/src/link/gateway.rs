@@ -47,7 +47,7 @@ impl Gateway {
     /// Opens a gateway before a server's URL; it passes everything.
     ///
     /// # Errors
-    /// When there is no port, or the URL has no address.
+    /// Fails when there is no port, or the URL has no address.
     pub async fn open(server: &str) -> Result<Gateway> {
         let (scheme, server) = server.split_once("://").context("a URL")?;
         let server: SocketAddr = server.parse().context("an address")?;
@@ -99,7 +99,7 @@ impl Gateway {
     /// Waits until `more` further connections have ended.
     ///
     /// # Errors
-    /// When they do not within the time.
+    /// Fails when they do not within the time.
     pub async fn wait_for_connections(&mut self, more: u64, within: Duration) -> Result<()> {
         let enough = *self.ended.borrow() + more;
         let waiting = self.ended.wait_for(|ended| *ended >= enough);

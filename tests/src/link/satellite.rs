@@ -88,7 +88,7 @@ impl Satellite {
     /// docs/uplink.md requires.
     ///
     /// # Errors
-    /// When Python or the system does not allow it.
+    /// Fails when Python or the system does not allow it.
     pub async fn launch() -> Result<Satellite> {
         std::fs::write("/proc/sys/net/ipv4/tcp_timestamps", "0").context("tcp_timestamps")?;
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("satellite/link.py");
@@ -129,7 +129,7 @@ impl Satellite {
     /// Changes the conditions on the link.
     ///
     /// # Errors
-    /// When the link has ended.
+    /// Fails when the link has ended.
     pub async fn set(&mut self, conditions: Conditions) -> Result<()> {
         self.send(serde_json::to_string(&conditions)?).await?;
         // A tally shows that the change before it was applied.
@@ -139,7 +139,7 @@ impl Satellite {
     /// Returns the packets put on the link so far.
     ///
     /// # Errors
-    /// When the link has ended.
+    /// Fails when the link has ended.
     pub async fn tally(&mut self) -> Result<Tally> {
         self.send(r#"{"tally": true}"#.to_owned()).await?;
         Ok(serde_json::from_str(&self.read_response().await?)?)
@@ -159,7 +159,7 @@ impl ShipNetwork {
     /// Returns a command for one of the programs, on board.
     ///
     /// # Errors
-    /// When the program is missing.
+    /// Fails when the program is missing.
     pub fn command(&self, name: &str) -> Result<Command> {
         let mut command = Command::new("nsenter");
         command
@@ -199,7 +199,7 @@ impl Certificates {
     /// Makes new certificates for a server at an address, and writes them.
     ///
     /// # Errors
-    /// When the folder cannot be written.
+    /// Fails when the folder cannot be written.
     pub fn make(folder: &Path, server: IpAddr) -> Result<Certificates> {
         let issuer_key = KeyPair::generate_for(&PKCS_ED25519)?;
         let of_itself = authority()?.self_signed(&issuer_key)?;
@@ -218,7 +218,7 @@ impl Certificates {
     /// Gives the server another certificate of the same authority.
     ///
     /// # Errors
-    /// When the files cannot be written.
+    /// Fails when the files cannot be written.
     pub fn renew(&self, validity: Validity) -> Result<()> {
         let issuer = Issuer::new(authority()?, KeyPair::from_pem(&self.issuer_key)?);
         let key = KeyPair::generate_for(&PKCS_ED25519)?;
@@ -253,7 +253,7 @@ fn authority() -> Result<CertificateParams> {
 /// nothing.
 ///
 /// # Errors
-/// When one did not use it.
+/// Fails when one did not use it.
 pub fn ensure_used(tally: &Tally) -> Result<()> {
     ensure!(tally.to_server.packets > 0, "the ship never called");
     ensure!(tally.to_ship.packets > 0, "the server never responded");

@@ -58,7 +58,7 @@ impl Database {
     /// Removes the database. A failed test leaves it for inspection.
     ///
     /// # Errors
-    /// When PostgreSQL refuses.
+    /// Fails when PostgreSQL refuses.
     pub async fn remove(self) -> Result<()> {
         let Some((server, name)) = self.created else {
             return Ok(());

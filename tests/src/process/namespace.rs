@@ -10,7 +10,7 @@ const OWN: &str = "BINNACLE_TEST_OWN_NAMESPACE";
 /// `test` is its name.
 ///
 /// # Panics
-/// When the system gives no network (it takes root, or unprivileged user
+/// Panics when the system gives no network (it takes root, or unprivileged user
 /// namespaces), or `body` fails.
 pub fn in_own_network(test: &str, body: impl Future<Output = Result<()>>) {
     in_own("--net", test, body);

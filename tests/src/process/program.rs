@@ -12,7 +12,7 @@ use tokio::process::{Child, Command};
 /// Returns the path of a program built with these tests.
 ///
 /// # Errors
-/// When it is missing: cargo builds a package's own programs only.
+/// Fails when it is missing: cargo builds a package's own programs only.
 pub fn path(name: &str) -> Result<PathBuf> {
     let tests = std::env::current_exe().context("the path of this test")?;
     let folder = tests
@@ -31,7 +31,7 @@ pub fn path(name: &str) -> Result<PathBuf> {
 /// Returns a command for one of the programs, without the caller's settings.
 ///
 /// # Errors
-/// When the program is missing.
+/// Fails when the program is missing.
 pub fn command(name: &str) -> Result<Command> {
     let mut command = Command::new(path(name)?);
     without_settings(&mut command);
@@ -51,7 +51,7 @@ pub(crate) fn without_settings(command: &mut Command) {
 /// Runs a program to its end.
 ///
 /// # Errors
-/// When it cannot be started.
+/// Fails when it cannot be started.
 pub async fn output_of(
     name: &str,
     arguments: impl IntoIterator<Item = impl AsRef<OsStr>>,
@@ -67,7 +67,7 @@ pub async fn output_of(
 /// Runs a program to its end with something on its standard input.
 ///
 /// # Errors
-/// When it cannot be started, or fails.
+/// Fails when it cannot be started, or fails.
 pub async fn run_with_input(mut command: Command, input: &str) -> Result<String> {
     command
         .stdin(Stdio::piped())
@@ -108,7 +108,7 @@ impl Program {
     /// Starts a command; standard error goes to the end of `log`.
     ///
     /// # Errors
-    /// When it cannot be started.
+    /// Fails when it cannot be started.
     pub fn start(name: &str, mut command: Command, log: &Path) -> Result<Program> {
         let errors = File::options()
             .create(true)
@@ -143,7 +143,7 @@ impl Program {
     /// True while the process runs.
     ///
     /// # Errors
-    /// When the system does not tell.
+    /// Fails when the system does not tell.
     pub fn is_running(&mut self) -> Result<bool> {
         Ok(self.child.try_wait()?.is_none())
     }
@@ -156,7 +156,7 @@ impl Program {
     /// Kills the process with signal 9, so that it cannot clean up.
     ///
     /// # Errors
-    /// When it had ended before.
+    /// Fails when it had ended before.
     pub async fn kill(mut self) -> Result<()> {
         ensure!(self.is_running()?, "{} had ended by itself", self.name);
         self.child.kill().await?;

@@ -88,7 +88,7 @@ pub struct NeededHeadings {
 /// Verifies the model of a plan by headings at sea.
 ///
 /// # Errors
-/// When the model's headings are ambiguous, it has no covariance, or the field is invalid.
+/// Fails when the model's headings are ambiguous, it has no covariance, or the field is invalid.
 pub fn verify(
     model_after: &Model,
     settled: &[SettledHeading],

@@ -55,7 +55,7 @@ pub struct FullParameters {
 /// one (docs/science.md, eq. 13). The precision does not depend on the heading.
 ///
 /// # Errors
-/// When the model or the earth's field is invalid, the model leaves no directive force on
+/// Fails when the model or the earth's field is invalid, the model leaves no directive force on
 /// this heading, the field's direction differs from the model's, or λ is implausible.
 pub fn lambda_at_berth(
     model: &Model,

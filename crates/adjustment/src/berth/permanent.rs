@@ -28,7 +28,7 @@ pub struct Permanent {
 /// comes from its own reading.
 ///
 /// # Errors
-/// When the model or the earth's field is invalid, the model leaves no directive force on
+/// Fails when the model or the earth's field is invalid, the model leaves no directive force on
 /// this heading, or λ or its standard error is implausible.
 pub fn permanent_at_berth(
     model: &Model,

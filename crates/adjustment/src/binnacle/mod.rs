@@ -48,7 +48,7 @@ impl Binnacle {
     /// Returns the binnacle with another setting.
     ///
     /// # Errors
-    /// When the setting names something that does not exist or is not on board.
+    /// Fails when the setting names something that does not exist or is not on board.
     pub fn with_setting(&self, setting: Setting) -> Result<Binnacle, BinnacleError> {
         let mut form = self.0.clone();
         form.setting = setting;
@@ -58,7 +58,7 @@ impl Binnacle {
     /// Returns the binnacle with another tested moment for a lot of magnets.
     ///
     /// # Errors
-    /// When there is no such lot, or the moment is invalid.
+    /// Fails when there is no such lot, or the moment is invalid.
     pub fn with_moment(
         &self,
         magnet: &str,

@@ -30,8 +30,8 @@ const EVENT_DAYS: f64 = 82.0;
 /// After a pause longer than this the noise of the row before is forgotten.
 const GAP_S: f64 = 1800.0;
 /// Noise over hours: of the instruments, and as much of the variation where H is 24 µT.
-/// Where it is larger, or the fit does not know the deviation, at a magnetic latitude
-/// that the ship has not met, residuals count for less.
+/// Residuals count for less in waters with more noise, and at magnetic latitudes that the ship
+/// has not met, for the fit does not know the deviation there.
 const NOISE_DEG: f64 = 0.2;
 const HOUR_MICROS: i64 = 3_600_000_000;
 /// Distance from an hour's median, in standard deviations, from which a residual is wild.

@@ -55,7 +55,7 @@ impl CoefficientsInDegrees {
     /// swing does.
     ///
     /// # Errors
-    /// When headings of the ship are ambiguous.
+    /// Fails when headings of the ship are ambiguous.
     pub fn from_swing(
         coefficients: &Coefficients,
     ) -> Result<CoefficientsInDegrees, DeviationError> {
@@ -88,7 +88,7 @@ impl Model {
     /// model's constant.
     ///
     /// # Errors
-    /// When the field is invalid or headings are ambiguous.
+    /// Fails when the field is invalid or headings are ambiguous.
     pub fn approximate_coefficients(
         &self,
         earth: EarthField,

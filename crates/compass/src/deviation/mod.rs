@@ -75,7 +75,7 @@ impl Coefficients {
     /// Computes the exact coefficients of a ship in a given field.
     ///
     /// # Errors
-    /// When the field is not finite with a positive horizontal part, or a parameter is not
+    /// Fails when the field is not finite with a positive horizontal part, or a parameter is not
     /// finite. Ambiguity is not checked here: see [`Coefficients::check_unambiguous`].
     pub fn new(parameters: &Parameters, earth: EarthField) -> Result<Coefficients, DeviationError> {
         let EarthField { h_nt, z_nt } = earth;
@@ -261,7 +261,7 @@ impl AtCompass {
 /// compass heading, in the order of [`Parameters`] (docs/science.md, eq. 10).
 ///
 /// # Errors
-/// When the field is invalid or headings are ambiguous.
+/// Fails when the field is invalid or headings are ambiguous.
 pub fn linearised_at_compass(
     parameters: &Parameters,
     compass_rad: f64,

@@ -33,7 +33,7 @@ impl Model {
     /// Predicts the deviation on a compass heading in the earth's field.
     ///
     /// # Errors
-    /// When the field is invalid, the model is not finite, or headings of the ship are
+    /// Fails when the field is invalid, the model is not finite, or headings of the ship are
     /// ambiguous.
     pub fn deviation(
         &self,

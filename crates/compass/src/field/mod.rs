@@ -50,7 +50,7 @@ pub enum FieldError {
 /// ellipsoid, and a time.
 ///
 /// # Errors
-/// When the date or the altitude is outside the model's range.
+/// Fails when the date or the altitude is outside the model's range.
 pub fn field(
     model: FieldModel,
     position: Position,
@@ -74,7 +74,7 @@ impl FieldAt {
     /// Prepares the model for an instant.
     ///
     /// # Errors
-    /// When the date is outside the model's years.
+    /// Fails when the date is outside the model's years.
     pub fn from_time(model: FieldModel, time: Timestamp) -> Result<FieldAt, FieldError> {
         FieldAt::from_year(model, time.decimal_year())
     }
@@ -82,7 +82,7 @@ impl FieldAt {
     /// Prepares the model for a decimal year, such as 2026.5.
     ///
     /// # Errors
-    /// When the year is outside the model's years, or not a number.
+    /// Fails when the year is outside the model's years, or not a number.
     pub fn from_year(model: FieldModel, decimal_year: f64) -> Result<FieldAt, FieldError> {
         let instant = interpolate(model, decimal_year)?;
         Ok(FieldAt {
@@ -93,7 +93,7 @@ impl FieldAt {
     /// Computes the field at a place and an altitude in metres above the ellipsoid.
     ///
     /// # Errors
-    /// When the altitude is not finite or outside the models' range.
+    /// Fails when the altitude is not finite or outside the models' range.
     pub fn at(&self, position: Position, altitude_m: f64) -> Result<Field, FieldError> {
         synthesise(&self.terms, position, altitude_m)
     }

@@ -120,8 +120,8 @@ impl Parameters {
     /// Computes the deviation on a magnetic heading and its gradient at that fixed magnetic
     /// heading (docs/science.md, eq. 9).
     ///
-    /// Where the ship's own field exactly cancels the earth's, the gradient is infinite or
-    /// NaN; check [`Coefficients::check_unambiguous`] first where that is possible.
+    /// The gradient is infinite or NaN where the ship's own field exactly cancels the earth's;
+    /// check [`Coefficients::check_unambiguous`] first where that is possible.
     ///
     /// [`Coefficients::check_unambiguous`]: crate::deviation::Coefficients::check_unambiguous
     pub fn linearised_at_magnetic(&self, magnetic_rad: f64, earth: EarthField) -> Linearised {
@@ -185,7 +185,7 @@ impl ShipMagnetism {
     /// Computes the seven ratios that headings determine.
     ///
     /// # Errors
-    /// When λ is not positive: such a ship reverses the compass.
+    /// Fails when λ is not positive: such a ship reverses the compass.
     pub fn parameters_over_lambda(&self) -> Result<Parameters, NoShieldingFactor> {
         let lambda = self.lambda();
         if !(lambda > 0.0 && lambda.is_finite()) {

@@ -127,7 +127,7 @@ pub(super) fn check_id(
 /// Writes calls, after the line of column names.
 ///
 /// # Errors
-/// When the writer fails.
+/// Fails when the writer fails.
 pub fn write(calls: &[PortCall], out: impl Write) -> std::io::Result<()> {
     let mut out = csv::Writer::from_writer(out);
     out.write_record(COLUMNS)?;

@@ -111,7 +111,7 @@ impl PortCode {
     /// country.
     ///
     /// # Errors
-    /// When it is not a code.
+    /// Fails when it is not a code.
     pub fn parse(text: &str) -> Result<PortCode, PortCodeError> {
         let wrong = || PortCodeError(text.chars().take(20).collect());
         let letters: Vec<u8> = text

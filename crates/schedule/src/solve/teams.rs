@@ -1,9 +1,8 @@
 //! Redirects whole teams.
 //!
-//! Where a team has several jobs a day, no chain of single needs can redirect
-//! it. So each visit in turn gets one more team, either a free one or another
-//! visit's of that day. The team takes the best jobs there, and chains place
-//! its former jobs again.
+//! No chain of single needs can redirect a team that has several jobs a day. So each visit in
+//! turn gets one more team, either a free one or another visit's of that day. The team takes the
+//! best jobs there, and chains place its former jobs again.
 
 use super::bound::Bound;
 use super::ejection_chain::{Chains, Reach};

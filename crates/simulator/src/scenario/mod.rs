@@ -24,7 +24,7 @@ impl Scenario {
     /// Reads a scenario from a file.
     ///
     /// # Errors
-    /// When the file cannot be read or is not a scenario; the error names the
+    /// Fails when the file cannot be read or is not a scenario; the error names the
     /// file, the line and the field.
     pub fn read(path: &Path) -> Result<Scenario, ScenarioError> {
         let file = path.display().to_string();
@@ -38,7 +38,7 @@ impl Scenario {
     /// Reads a scenario from text; `file` is used in errors.
     ///
     /// # Errors
-    /// When the text is not a scenario.
+    /// Fails when the text is not a scenario.
     pub fn parse(file: &str, text: &str) -> Result<Scenario, ScenarioError> {
         let source = error::Source { file, text };
         let raw = toml::from_str(text).map_err(|error| source.toml(&error))?;

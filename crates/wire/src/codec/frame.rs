@@ -32,7 +32,7 @@ const MAX_COLUMNS: u64 = 64;
 /// Writes a batch as a frame, with the samples in order of time.
 ///
 /// # Errors
-/// When a value is out of range (see [`super::check`]) or the batch is too
+/// Fails when a value is out of range (see [`super::check`]) or the batch is too
 /// large.
 pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
     if batch.samples.len() > MAX_SAMPLES {
@@ -90,7 +90,7 @@ fn write_columns(columns: &[Column]) -> Vec<u8> {
 /// Reads a frame.
 ///
 /// # Errors
-/// When the bytes are not a whole, undamaged frame of a version that this
+/// Fails when the bytes are not a whole, undamaged frame of a version that this
 /// decoder knows, or hold values out of range.
 pub fn decode(bytes: &[u8]) -> Result<Batch, DecodeError> {
     let (flags, content) = content(bytes)?;

@@ -90,7 +90,7 @@ pub fn is_compact(bytes: &[u8]) -> bool {
 /// Reads a response.
 ///
 /// # Errors
-/// When the bytes are another thing, incomplete, or of a later form.
+/// Fails when the bytes are another thing, incomplete, or of a later form.
 pub fn decode(bytes: &[u8]) -> Result<Downlink, DecodeError> {
     if !is_compact(bytes) {
         return Err(DecodeError::BadMagic);

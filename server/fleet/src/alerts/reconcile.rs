@@ -102,7 +102,8 @@ async fn open_or_update(
     let is_cleared = known.state == State::Cleared;
     if is_another || (is_cleared && is_worse) {
         store::end(tx, vessel, known.id, FOLLOWED, now).await?;
-        let cleared = (!is_cleared).then(|| PendingChange::from_kind(known.id, ChangeKind::Cleared));
+        let cleared =
+            (!is_cleared).then(|| PendingChange::from_kind(known.id, ChangeKind::Cleared));
         let id = store::insert(tx, vessel, compass, desired, now).await?;
         return Ok(cleared.into_iter().chain([raised(id)]).collect());
     }

@@ -132,7 +132,7 @@ async fn find(db: &Db, vessel: VesselId) -> Result<Particulars> {
 /// Returns a vessel's flag, and the adjuster's licence that its operator requires.
 ///
 /// # Errors
-/// When the database fails.
+/// Fails when the database fails.
 pub async fn adjuster_requirements(
     tx: &mut Tx,
     vessel: VesselId,

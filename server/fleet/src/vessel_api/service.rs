@@ -27,7 +27,7 @@ impl DomainEvent for ServiceChanged {}
 /// Takes a vessel out of service, or back into it; no change where it is so already.
 ///
 /// # Errors
-/// When a subscriber refuses, as work orders do while one of the vessel's is under way.
+/// Fails when a subscriber refuses, as work orders do while one of the vessel's is under way.
 pub(super) async fn set(
     tx: &mut Tx,
     operator: OperatorId,

@@ -32,7 +32,7 @@ impl Photo {
     /// Validates the bytes of a photograph.
     ///
     /// # Errors
-    /// When it is too large, or of an unsupported type.
+    /// Fails when it is too large, or of an unsupported type.
     pub(crate) fn new(id: PhotoId, bytes: &[u8], caption: &Caption) -> Result<Photo> {
         if bytes.len() > MAX_BYTES {
             return Err(Error::TooLarge(MAX_BYTES));

@@ -46,7 +46,7 @@ struct Before {
 /// iron near the compass.
 ///
 /// # Errors
-/// When the database fails.
+/// Fails when the database fails.
 pub(crate) async fn find_for_compass(
     app: &App,
     vessel: VesselId,

@@ -71,7 +71,7 @@ pub(crate) fn require_after_last_step(stored: &StoredOrder, at: Time) -> Result<
 /// Judges a step by the compass before and after it. Takes seconds if a new plan is needed.
 ///
 /// # Errors
-/// When the readings are not headings.
+/// Fails when the readings are not headings.
 pub(crate) fn judge(
     plan_request: &PlanRequest,
     step: Step,

@@ -26,7 +26,7 @@ impl KnownCall {
     /// Port and times of the stay.
     ///
     /// # Errors
-    /// When the stored port is not a port code.
+    /// Fails when the stored port is not a port code.
     pub(crate) fn alongside(&self) -> Result<Alongside> {
         let port = PortCode::parse(&self.port).context("a stored port")?;
         Ok(Alongside::new(port, self.eta, self.etd))

@@ -18,7 +18,7 @@ use binnacle_platform::time::Time;
 /// events, to be published after the commit.
 ///
 /// # Errors
-/// When the database cannot be written.
+/// Fails when the database cannot be written.
 pub async fn attach_new_calls(
     tx: &mut Tx,
     vessel: VesselId,

@@ -43,7 +43,7 @@ pub(crate) struct AffectedOrder {
 /// published after the commit.
 ///
 /// # Errors
-/// When the database cannot be written.
+/// Fails when the database cannot be written.
 pub async fn announce_call_updates(
     tx: &mut Tx,
     vessel: VesselId,

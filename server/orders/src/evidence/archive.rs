@@ -59,7 +59,7 @@ pub(super) struct LogHead {
 /// Writes the archive.
 ///
 /// # Errors
-/// When memory is exhausted.
+/// Fails when memory is exhausted.
 pub fn archive(evidence: Evidence) -> anyhow::Result<Vec<u8>> {
     let texts: Vec<&str> = evidence
         .lines

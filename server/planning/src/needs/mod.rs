@@ -38,9 +38,9 @@ where
 
 /// List the fleet's needs
 ///
-/// When each compass is to be adjusted by the rules that bind its ship, brought forward by
-/// predicted deviation over a limit, a change of the ship's magnetism, or an adjustment
-/// that the sea does not confirm.
+/// Date by which the rules for the vessel require each compass to be adjusted. Deviation
+/// predicted over a limit, a change of the ship's magnetism, or an adjustment that headings
+/// at sea do not confirm brings it forward.
 #[utoipa::path(get, path = "/needs", tag = "adjusting", params(Filter, Page),
     responses((status = 200, body = NeedList), (status = 401, body = Problem)))]
 async fn list_needs(

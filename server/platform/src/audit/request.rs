@@ -48,7 +48,7 @@ impl RequestContext {
     /// Returns the context of a request from its parts.
     ///
     /// # Errors
-    /// When the request has not passed the audit middleware.
+    /// Fails when the request has not passed the audit middleware.
     pub fn of(parts: &Parts) -> Result<&RequestContext> {
         let found = parts.extensions.get::<RequestContext>();
         found.ok_or_else(|| Error::Internal(anyhow::anyhow!("a route without the audit log")))

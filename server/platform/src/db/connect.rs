@@ -23,7 +23,7 @@ impl Db {
     /// Opens `sqlite://FILE` (created if missing) or `postgres://…`.
     ///
     /// # Errors
-    /// When the URL is of another kind, or the database cannot be reached.
+    /// Fails when the URL is of another kind, or the database cannot be reached.
     pub async fn connect(url: &str, subscribers: Subscribers) -> anyhow::Result<Db> {
         let pools = match url.split_once(':') {
             Some(("sqlite", _)) => connect_sqlite(url).await?,
@@ -39,7 +39,7 @@ impl Db {
     /// Applies pending migrations.
     ///
     /// # Errors
-    /// When one fails, or an applied one is unknown or has been edited since.
+    /// Fails when one fails, or an applied one is unknown or has been edited since.
     pub async fn migrate(&self) -> anyhow::Result<()> {
         let migrated = match &self.pools {
             Pools::Sqlite { writer, .. } => PORTABLE.run(writer).await,

@@ -141,7 +141,7 @@ impl Tx {
     /// Publishes an event: each subscriber runs now, in this transaction.
     ///
     /// # Errors
-    /// When a subscriber fails or rejects the event.
+    /// Fails when a subscriber fails or rejects the event.
     pub async fn publish<E: DomainEvent>(&mut self, event: &E) -> error::Result<()> {
         let subscribers = Arc::clone(&self.subscribers);
         for handler in subscribers.of::<E>() {
@@ -153,7 +153,7 @@ impl Tx {
     /// Asks a question, which its handler answers in this transaction.
     ///
     /// # Errors
-    /// When the question has no handler, or the handler fails.
+    /// Fails when the question has no handler, or the handler fails.
     pub async fn ask<Q: Question>(&mut self, question: &Q) -> Result<Q::Answer> {
         let Some(answerer) = self.subscribers.to::<Q>() else {
             let name = type_name::<Q>();

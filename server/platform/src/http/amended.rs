@@ -25,7 +25,7 @@ impl<T> Amended<T> {
 /// Deserializes a value that can be changed but not removed: null is rejected.
 ///
 /// # Errors
-/// When the value is null or invalid.
+/// Fails when the value is null or invalid.
 pub fn never_null<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {

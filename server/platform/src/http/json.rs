@@ -66,7 +66,7 @@ impl<S: Send + Sync, T: DeserializeOwned + Send> FromRequestParts<S> for Id<T> {
 /// Returns a name, trimmed.
 ///
 /// # Errors
-/// When it is empty, too long or not on one line.
+/// Fails when it is empty, too long or not on one line.
 pub fn text(field: &'static str, value: &str) -> Result<String> {
     let value = value.trim();
     let detail = if value.is_empty() {
@@ -96,7 +96,7 @@ pub fn is_control(c: char) -> bool {
 /// Checks an optional text as [`text`] does; blank text counts as absent.
 ///
 /// # Errors
-/// When it is too long or not on one line.
+/// Fails when it is too long or not on one line.
 pub fn optional_text(field: &'static str, value: Option<&str>) -> Result<Option<String>> {
     let given = value.filter(|value| !value.trim().is_empty());
     given.map(|value| text(field, value)).transpose()
@@ -105,7 +105,7 @@ pub fn optional_text(field: &'static str, value: Option<&str>) -> Result<Option<
 /// Parses a time of a query string.
 ///
 /// # Errors
-/// When it is not RFC 3339.
+/// Fails when it is not RFC 3339.
 pub fn time(field: &'static str, value: Option<&str>) -> Result<Option<Timestamp>> {
     value
         .map(|text| {
@@ -120,7 +120,7 @@ pub fn time(field: &'static str, value: Option<&str>) -> Result<Option<Timestamp
 /// Returns a number of a query string if it is within its range; NaN never is.
 ///
 /// # Errors
-/// When it is outside the range.
+/// Fails when it is outside the range.
 pub fn degrees(field: &'static str, value: f64, low: f64, high: f64) -> Result<f64> {
     if (low..=high).contains(&value) {
         return Ok(value);

@@ -33,7 +33,7 @@ impl Page {
     /// Returns the id after which the page begins.
     ///
     /// # Errors
-    /// When the cursor is not of this list.
+    /// Fails when the cursor is not of this list.
     pub fn after_id(&self) -> Result<Option<Uuid>> {
         let Some(after) = &self.after else {
             return Ok(None);
@@ -45,7 +45,7 @@ impl Page {
     /// Returns the number after which the page begins.
     ///
     /// # Errors
-    /// When the cursor is not of this list.
+    /// Fails when the cursor is not of this list.
     pub fn after_number(&self) -> Result<Option<i64>> {
         let Some(after) = &self.after else {
             return Ok(None);
@@ -58,7 +58,7 @@ impl Page {
     /// consists of the number and the count of listed items with that number.
     ///
     /// # Errors
-    /// When the cursor is not of this list.
+    /// Fails when the cursor is not of this list.
     pub fn after_shared(&self) -> Result<Option<(i64, usize)>> {
         let Some(after) = &self.after else {
             return Ok(None);
@@ -72,7 +72,7 @@ impl Page {
     /// Returns the cursor of a list that is sorted by time: an item's time and its id.
     ///
     /// # Errors
-    /// When the cursor is not of this list.
+    /// Fails when the cursor is not of this list.
     pub fn after_time(&self) -> Result<Option<(i64, Uuid)>> {
         let Some(after) = &self.after else {
             return Ok(None);

@@ -65,7 +65,7 @@ pub async fn announce(
 }
 
 /// Checks whether the same recipient also gets a letter about the next topic of the series.
-/// That letter makes the one about the end of this topic redundant.
+/// With that letter the one about the end of this topic is redundant.
 fn is_replaced(announcement: &Announcement, least: Severity, all: &[Announcement]) -> bool {
     let is_next = |other: &Announcement| {
         other.phase == Phase::Started

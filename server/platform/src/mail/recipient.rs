@@ -73,7 +73,7 @@ impl NewRecipient {
     /// Returns the recipient if mail can be sent to the address.
     ///
     /// # Errors
-    /// When mail cannot be sent there.
+    /// Fails when mail cannot be sent there.
     pub(super) fn checked(self) -> Result<NewRecipient> {
         Ok(NewRecipient {
             address: address("address", &self.address)?,
@@ -85,7 +85,7 @@ impl NewRecipient {
 /// Returns an address with its domain in lower case.
 ///
 /// # Errors
-/// When mail cannot be sent there.
+/// Fails when mail cannot be sent there.
 pub fn address(field: &'static str, given: &str) -> Result<String> {
     let invalid = |detail: &str| {
         Err(Error::Invalid {

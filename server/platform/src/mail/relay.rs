@@ -50,7 +50,7 @@ impl Relay {
     /// server in the greeting.
     ///
     /// # Errors
-    /// When the URL has another form; the error does not contain it.
+    /// Fails when the URL has another form; the error does not contain it.
     pub fn new(url: &str, authority: Option<&[u8]>, name: &str) -> Result<Relay> {
         let url = Url::parse(url).context("is not a URL")?;
         let host = url.host_str().filter(|host| !host.is_empty());
@@ -91,7 +91,7 @@ impl Relay {
     /// Hands a letter over.
     ///
     /// # Errors
-    /// When the relay gave no response to the letter: the fault may be temporary.
+    /// Fails when the relay gave no response to the letter: the fault may be temporary.
     pub(super) async fn hand_over(&self, envelope: &Envelope, letter: &[u8]) -> Result<Attempt> {
         let session = async {
             let mut relay = self.connect().await?;

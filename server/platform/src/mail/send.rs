@@ -38,7 +38,7 @@ impl Mailer {
     /// Creates the sender from the settings; `None` if mail is not set up.
     ///
     /// # Errors
-    /// When a setting is not valid. The error names the setting, but no password.
+    /// Fails when a setting is not valid. The error names the setting, but no password.
     pub fn new(config: &config::Mail) -> Result<Option<Mailer>> {
         let (Some(relay), Some(from), Some(public_url)) =
             (&config.smtp_url, &config.mail_from, &config.public_url)

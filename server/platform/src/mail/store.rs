@@ -56,7 +56,7 @@ pub(super) async fn must_find(db: &Db, operator: OperatorId, id: RecipientId) ->
 }
 
 /// # Errors
-/// When the address is on the operator's list.
+/// Fails when the address is on the operator's list.
 pub(super) async fn insert(
     tx: &mut Tx,
     operator: OperatorId,

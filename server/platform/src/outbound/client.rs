@@ -26,7 +26,7 @@ pub enum Reach {
 /// Builds the client for requests to other servers: with a timeout, and without redirects.
 ///
 /// # Errors
-/// When this machine has no root certificates.
+/// Fails when this machine has no root certificates.
 pub fn client(reach: Reach) -> anyhow::Result<Client> {
     let mut client = Client::builder()
         .redirect(Policy::none())
@@ -42,7 +42,7 @@ pub fn client(reach: Reach) -> anyhow::Result<Client> {
 /// Parses a URL and checks that it may be requested, as far as the text shows.
 ///
 /// # Errors
-/// When it may not.
+/// Fails when it may not.
 pub fn check_url(text: &str, reach: Reach) -> anyhow::Result<Url> {
     if text.len() > MAX_URL {
         bail!("is longer than {MAX_URL} characters");

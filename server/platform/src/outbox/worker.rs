@@ -21,7 +21,7 @@ pub trait Carrier: Send + Sync {
     /// Makes one attempt at a delivery.
     ///
     /// # Errors
-    /// When there was no response; the delivery is retried.
+    /// Fails when there was no response; the delivery is retried.
     fn carry(
         &self,
         app: &App,
@@ -72,7 +72,7 @@ pub async fn run<C: Carrier>(app: App, carrier: C) {
 /// Makes one delivery, if one is due.
 ///
 /// # Errors
-/// When the queue cannot be reached; a delivery that fails is not an error here.
+/// Fails when the queue cannot be reached; a delivery that fails is not an error here.
 pub async fn step<C: Carrier>(app: &App, carrier: &C) -> anyhow::Result<Option<Sent>> {
     let now = app.clock.now().into();
     let Some(claimed) = queue::claim(&app.db, C::CHANNEL, now).await? else {

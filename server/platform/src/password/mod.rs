@@ -72,7 +72,7 @@ fn count_unguessed(password: &str, about: &[&str]) -> usize {
 /// Acquires a permit for hashing: each hash takes 19 MB and a core.
 ///
 /// # Errors
-/// When the server is stopping.
+/// Fails when the server is stopping.
 pub async fn acquire_permit(app: &App) -> Result<OwnedSemaphorePermit> {
     let permit = app.hashing.clone().acquire_owned().await;
     Ok(permit.map_err(anyhow::Error::from)?)
@@ -82,7 +82,7 @@ pub async fn acquire_permit(app: &App) -> Result<OwnedSemaphorePermit> {
 /// lasts, even if nobody waits for the result any more.
 ///
 /// # Errors
-/// When the server is stopping.
+/// Fails when the server is stopping.
 pub async fn matches(
     permit: OwnedSemaphorePermit,
     password: String,
@@ -98,7 +98,7 @@ pub async fn matches(
 /// Returns the hash of a password, as it is stored.
 ///
 /// # Errors
-/// When there is too little memory.
+/// Fails when there is too little memory.
 pub async fn hash(permit: OwnedSemaphorePermit, password: String) -> Result<String> {
     let hashed = tokio::task::spawn_blocking(move || {
         let hashed = secret::hash_password(&password);

@@ -19,7 +19,7 @@ use binnacle_compass::time::Timestamp;
 /// Checks a user's code, from the app or a recovery code, and marks it as used.
 ///
 /// # Errors
-/// When the database fails.
+/// Fails when the database fails.
 pub async fn use_code(
     request: &RequestContext,
     user: UserId,
@@ -36,7 +36,7 @@ pub async fn use_code(
 /// Removes a user's second factor; false when there was none.
 ///
 /// # Errors
-/// When the database fails.
+/// Fails when the database fails.
 pub async fn remove(tx: &mut Tx, user: UserId) -> Result<bool> {
     Ok(store::remove(tx, user).await?)
 }

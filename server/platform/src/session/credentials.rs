@@ -14,7 +14,7 @@ use axum::http::HeaderMap;
 /// cookie.
 ///
 /// # Errors
-/// When the database fails.
+/// Fails when the database fails.
 pub async fn open(
     app: &App,
     request: &RequestContext,
@@ -38,7 +38,7 @@ pub async fn open(
 /// Returns the user with an e-mail and a password.
 ///
 /// # Errors
-/// When the password is wrong, or after too many failed attempts.
+/// Fails when the password is wrong, or after too many failed attempts.
 pub(crate) async fn check_password(
     app: &App,
     request: &RequestContext,
@@ -71,7 +71,7 @@ pub(crate) async fn check_password(
 /// session.
 ///
 /// # Errors
-/// When the password is wrong, which counts as a failed sign-in.
+/// Fails when the password is wrong, which counts as a failed sign-in.
 pub async fn confirm_password(
     app: &App,
     request: &RequestContext,

@@ -70,7 +70,7 @@ pub async fn find_user(
 /// Checks whether a session is still valid.
 ///
 /// # Errors
-/// When the database fails.
+/// Fails when the database fails.
 pub async fn is_valid(db: &Db, id: SessionId, now: Time) -> Result<bool> {
     let found = row!(
         db,
@@ -88,7 +88,7 @@ pub async fn is_valid(db: &Db, id: SessionId, now: Time) -> Result<bool> {
 /// Returns the name of a user.
 ///
 /// # Errors
-/// When there is no such user.
+/// Fails when there is no such user.
 pub async fn name_of(tx: &mut Tx, id: UserId) -> error::Result<String> {
     let found = row!(
         in tx,

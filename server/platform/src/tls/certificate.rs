@@ -48,7 +48,7 @@ impl Certificate {
     /// Reads both files.
     ///
     /// # Errors
-    /// When a file cannot be read or holds no certificate or key, or when the two do not
+    /// Fails when a file cannot be read or holds no certificate or key, or when the two do not
     /// match. The message names the file.
     pub fn load(&self) -> Result<Configs> {
         let name = self.chain.display();

@@ -37,7 +37,7 @@ impl TlsListener {
     /// Begins to accept connections.
     ///
     /// # Errors
-    /// When the certificate cannot be used, or signals cannot be received.
+    /// Fails when the certificate cannot be used, or signals cannot be received.
     pub fn new(listener: TcpListener, certificate: Certificate) -> Result<TlsListener> {
         let address = listener.local_addr()?;
         let (config, in_use) = watch::channel(certificate.load()?);

@@ -53,7 +53,7 @@ pub(crate) async fn find_holder(db: &Db, token: &str, now: Time) -> Result<Optio
 /// Checks whether a token is still valid.
 ///
 /// # Errors
-/// When the database fails.
+/// Fails when the database fails.
 pub async fn is_valid(db: &Db, id: TokenId, now: Time) -> Result<bool> {
     let found = row!(
         db,
@@ -136,7 +136,7 @@ pub(crate) async fn delete(request: &RequestContext, user: UserId, id: TokenId) 
 /// Revokes all of a user's tokens.
 ///
 /// # Errors
-/// When the database fails.
+/// Fails when the database fails.
 pub async fn delete_all(tx: &mut Tx, user: UserId) -> Result<u64> {
     execute!(tx, "DELETE FROM api_tokens WHERE user_id = $1", user)
 }

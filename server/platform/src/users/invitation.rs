@@ -178,7 +178,7 @@ pub(super) async fn make(tx: &mut Tx, app: &App, user: UserId) -> Result<Invitat
 /// user has the e-mail address.
 ///
 /// # Errors
-/// When the database fails.
+/// Fails when the database fails.
 pub async fn reset(
     request: &RequestContext,
     email: &str,

@@ -50,7 +50,7 @@ impl MessageKinds {
     /// repetitions.
     ///
     /// # Errors
-    /// When a name is not that of a kind, with the reason.
+    /// Fails when a name is not that of a kind, with the reason.
     pub(super) fn find(&self, names: &[String]) -> Result<Vec<DeclaredKind>, String> {
         let is_unknown = |name: &String| !self.names().any(|known| known == name);
         if let Some(at) = names.iter().position(is_unknown) {

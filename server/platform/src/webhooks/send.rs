@@ -27,7 +27,7 @@ impl Sender {
     /// Creates a sender without any connection.
     ///
     /// # Errors
-    /// When this machine has no root certificates.
+    /// Fails when this machine has no root certificates.
     pub fn new(reach: Reach) -> anyhow::Result<Sender> {
         let client = client(reach)?;
         Ok(Sender { client, reach })

@@ -97,7 +97,7 @@ impl NewWebhook {
     /// Returns the declared kinds that the webhook subscribes to.
     ///
     /// # Errors
-    /// When a name is not that of a kind.
+    /// Fails when a name is not that of a kind.
     pub(super) fn find_kinds(&self, declared: &MessageKinds) -> Result<Vec<DeclaredKind>> {
         let invalid = |detail| Error::Invalid {
             field: "body",
@@ -109,7 +109,7 @@ impl NewWebhook {
     /// Returns the webhook with its kinds in order, if messages can be sent to it.
     ///
     /// # Errors
-    /// When messages cannot be sent to it, or it subscribes to none.
+    /// Fails when messages cannot be sent to it, or it subscribes to none.
     pub(super) fn checked(
         mut self,
         kinds: &[DeclaredKind],

@@ -212,7 +212,7 @@ impl ReadingForm {
     /// Converts the form to a berth reading.
     ///
     /// # Errors
-    /// When no ship has such a field.
+    /// Fails when no ship has such a field.
     pub fn reading(&self, variation: Variation) -> Result<BerthReading, BerthError> {
         if let Some(vertical) = self.vertical() {
             vertical.check_range()?;

@@ -20,7 +20,7 @@ use crate::binnacle::Setting;
 /// Finds the best few settings of the correctors, or the reasons for their absence.
 ///
 /// # Errors
-/// When the input is invalid. An inconsistent berth, an old model and the like are
+/// Fails when the input is invalid. An inconsistent berth, an old model and the like are
 /// refusals, not errors.
 pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
     inputs::validate(adjustment)?;

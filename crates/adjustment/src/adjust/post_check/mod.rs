@@ -30,7 +30,7 @@ use update::update_prediction;
 /// `compass_deg` the compass heading before the bowl was taken out.
 ///
 /// # Errors
-/// When the input of the adjustment is invalid.
+/// Fails when the input of the adjustment is invalid.
 pub fn check_second_reading(
     adjustment: &Adjustment<'_>,
     done: &[CompletedStep],
@@ -75,7 +75,7 @@ pub fn check_second_reading(
 /// second reading: slips and moments that the compass leaves open widen the band.
 ///
 /// # Errors
-/// When the input of the adjustment is invalid.
+/// Fails when the input of the adjustment is invalid.
 pub fn predict_by_compass(
     adjustment: &Adjustment<'_>,
     done: &[CompletedStep],

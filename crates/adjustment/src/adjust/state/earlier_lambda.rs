@@ -12,7 +12,7 @@ impl EarlierLambda {
     /// Determines λ from a berth, with the setting of its binnacle.
     ///
     /// # Errors
-    /// When its reading gives no λ.
+    /// Fails when its reading gives no λ.
     pub fn from_berth(
         at: Timestamp,
         adjustment: &Adjustment<'_>,

@@ -22,7 +22,7 @@ const MISCOUNTED: i32 = 3;
 /// of the steps, each within its own tolerance, add up.
 ///
 /// # Errors
-/// When the input of the adjustment is invalid.
+/// Fails when the input of the adjustment is invalid.
 pub fn check_total_turn(
     adjustment: &Adjustment<'_>,
     first_deg: f64,
@@ -44,7 +44,7 @@ pub fn check_total_turn(
 /// Judges a step by the compass headings before and after it, degrees.
 ///
 /// # Errors
-/// When the input of the adjustment is invalid, or the headings are not finite.
+/// Fails when the input of the adjustment is invalid, or the headings are not finite.
 pub fn check_step(
     adjustment: &Adjustment<'_>,
     step: &Step,
@@ -112,7 +112,7 @@ pub fn check_step(
 /// since. `adjustment` is that before the step.
 ///
 /// # Errors
-/// When the input of the adjustment is invalid.
+/// Fails when the input of the adjustment is invalid.
 pub fn check_step_with_setting(
     adjustment: &Adjustment<'_>,
     step: &Step,

@@ -45,7 +45,7 @@ struct DroppedReading {
     /// Index among all readings.
     index: usize,
     time: Timestamp,
-    /// What the magnetic compass says of the references.
+    /// Verdict of the magnetic compass on the references.
     verdict: &'static str,
 }
 

@@ -6,7 +6,7 @@ use crate::calls::FileError;
 /// Parses hours from `P2DT12H`, `PT90M`, `P1W` and the like.
 ///
 /// # Errors
-/// When it is something else, negative, or more than [`MAX_HOURS`].
+/// Fails when it is something else, negative, or more than [`MAX_HOURS`].
 pub(super) fn hours(line: &Line) -> Result<f64, FileError> {
     let hours = read(&line.value).filter(|hours| *hours <= MAX_HOURS);
     hours.ok_or_else(|| {

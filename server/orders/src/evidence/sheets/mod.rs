@@ -18,7 +18,7 @@ use values::{minute, number, word};
 /// Draws the record as PDF.
 ///
 /// # Errors
-/// When the text is not an adjustment record.
+/// Fails when the text is not an adjustment record.
 pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
     let (sheets, about) = draw(text)?;
     pdf(&sheets, &about)
@@ -27,7 +27,7 @@ pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
 /// Draws the record as a picture, its sheets one below the other.
 ///
 /// # Errors
-/// When the text is not an adjustment record.
+/// Fails when the text is not an adjustment record.
 pub fn record_svg(text: &str) -> anyhow::Result<String> {
     let (sheets, about) = draw(text)?;
     Ok(svg(&sheets, &about.title))
@@ -66,7 +66,7 @@ fn draw(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
 /// Lists the predicted residuals of a record, one row for each place and heading.
 ///
 /// # Errors
-/// When the text is not an adjustment record.
+/// Fails when the text is not an adjustment record.
 pub fn predicted_csv(text: &str) -> anyhow::Result<String> {
     let record: Value = serde_json::from_str(text)?;
     let tables = record["predicted_after"].as_array();

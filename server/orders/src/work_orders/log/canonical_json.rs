@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// Writes a value as canonical JSON: keys in order, no blanks.
 ///
 /// # Errors
-/// When it cannot be written as JSON.
+/// Fails when it cannot be written as JSON.
 pub(crate) fn canonical(value: &impl Serialize) -> Result<String> {
     // serde_json's map is sorted; a test below holds it to that.
     Ok(serde_json::to_string(&serde_json::to_value(value)?)?)

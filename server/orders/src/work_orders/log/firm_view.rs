@@ -12,7 +12,7 @@ use serde_json::json;
 /// Returns a line of a log as a tenant may read it.
 ///
 /// # Errors
-/// When it cannot be written as JSON.
+/// Fails when it cannot be written as JSON.
 pub(crate) fn line(tenant: Tenant, entry: &Entry, line: String, sha256: &str) -> Result<String> {
     let seen = |firm| entry.content.event().audience().includes(firm);
     if tenant.firm().is_none_or(seen) {

@@ -14,7 +14,7 @@ use uuid::Uuid;
 /// holds the order's lock.
 ///
 /// # Errors
-/// When the key was used for another request to this order.
+/// Fails when the key was used for another request to this order.
 pub(crate) async fn once(
     key: &Key,
     tx: &mut Tx,
@@ -58,7 +58,7 @@ pub(crate) async fn once(
 /// Finds the entry that the same request wrote before.
 ///
 /// # Errors
-/// When the key was used for another request to this order.
+/// Fails when the key was used for another request to this order.
 pub(crate) async fn find(
     key: &Key,
     db: &Db,
@@ -94,7 +94,7 @@ impl KnownRequest {
     /// Returns the entry that the request wrote.
     ///
     /// # Errors
-    /// When the key was used for another request.
+    /// Fails when the key was used for another request.
     fn entry_of(self, request_hash: &[u8]) -> Result<Uuid> {
         if self.request_hash == request_hash {
             Ok(self.entry_id)

@@ -17,7 +17,7 @@ impl StoredOrder {
     /// Reads an order whose entries are stored as these lines.
     ///
     /// # Errors
-    /// When a line is not an entry.
+    /// Fails when a line is not an entry.
     pub(super) fn read(summary: Summary, lines: Vec<(String,)>) -> Result<StoredOrder> {
         let read = |(line,): (String,)| Ok(serde_json::from_str(&line)?);
         let log: Result<Vec<Entry>> = lines.into_iter().map(read).collect();

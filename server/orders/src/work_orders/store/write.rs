@@ -17,7 +17,7 @@ use uuid::Uuid;
 /// Locks a compass against other orders until the transaction ends.
 ///
 /// # Errors
-/// When the database fails.
+/// Fails when the database fails.
 pub async fn lock_compass(tx: &mut Tx, vessel: VesselId, compass: CompassId) -> Result<()> {
     execute!(
         tx,
