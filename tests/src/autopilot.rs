@@ -70,6 +70,7 @@ fn fields_of(line: &str) -> Result<Vec<&str>> {
 
 /// Fields of an HDG sentence, degrees, east positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::struct_field_names, reason = "units stand in names")]
 struct Hdg {
     compass_deg: f64,
     deviation_deg: f64,
