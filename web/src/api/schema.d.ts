@@ -736,9 +736,9 @@ export interface paths {
         };
         /**
          * List the fleet's needs
-         * @description When each compass is to be adjusted by the rules that bind its ship, brought forward by
-         *     predicted deviation over a limit, a change of the ship's magnetism, or an adjustment
-         *     that the sea does not confirm.
+         * @description Date by which the rules for the vessel require each compass to be adjusted. Deviation
+         *     predicted over a limit, a change of the ship's magnetism, or an adjustment that headings
+         *     at sea do not confirm brings it forward.
          */
         get: operations["list_needs"];
         put?: never;
