@@ -33,8 +33,8 @@ pub use provider::{CLIENT_SECRET, Provider, Signer, provider_settings};
 pub use relay::{Behaviour, Encryption, Letter, Relay, Stage};
 pub use server::{DAY_S, HOUR_S, PASSWORD, Prepared, START, TestServer, client};
 pub use ship::{
-    Ship, days_at_sea, days_in_waters, enrol_with_code, frame, model_after_step, passage, sample,
-    true_model,
+    Ship, days_at_sea, days_in_waters, enrol_with_code, frame, model_after_step, passage, position,
+    sample, true_model,
 };
 
 /// Runs each test on SQLite and on PostgreSQL.

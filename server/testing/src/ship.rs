@@ -136,8 +136,15 @@ pub fn frame(stream: StreamId, seq: u64, samples: &[Sample]) -> Vec<u8> {
     binnacle_wire::encode(&batch).unwrap()
 }
 
-/// Default position of the ships: degrees north and east.
-const BISCAY: (f64, f64) = (48.0, -6.0);
+/// Returns a position, degrees north and east.
+pub fn position(lat: f64, lon: f64) -> Position {
+    Position::new(lat, lon).unwrap()
+}
+
+/// Returns the default position of the ships.
+fn biscay() -> Position {
+    position(48.0, -6.0)
+}
 
 /// Returns the known magnetism of the ships.
 pub fn true_model() -> Model {
@@ -150,7 +157,7 @@ pub fn true_model() -> Model {
 
 /// Returns a sample of that ship on a true heading.
 pub fn sample(time: Timestamp, heading_deg: f64) -> Sample {
-    sample_of(&true_model(), BISCAY, time, heading_deg)
+    sample_of(&true_model(), biscay(), time, heading_deg)
 }
 
 /// Returns the known magnetism after a step in permanent magnetism, nT.
@@ -161,8 +168,7 @@ pub fn model_after_step(bx_nt: f64, by_nt: f64) -> Model {
     ship
 }
 
-fn sample_of(ship: &Model, place: (f64, f64), time: Timestamp, heading_deg: f64) -> Sample {
-    let position = Position::new(place.0, place.1).unwrap();
+fn sample_of(ship: &Model, position: Position, time: Timestamp, heading_deg: f64) -> Sample {
     let earth = field(FieldModel::Igrf14, position, 0.0, time).unwrap();
     let heading = TrueHeading::new(heading_deg).unwrap();
     let compass = ship
@@ -192,18 +198,18 @@ pub fn passage(from: &str, samples: usize) -> Vec<Sample> {
 /// Returns samples of a number of days at sea: legs of three hours, a sample every ten
 /// minutes with both references, each with a small error.
 pub fn days_at_sea(ship: &Model, from: &str, days: f64) -> Vec<Sample> {
-    days_in_waters(BISCAY, ship, from, days)
+    days_in_waters(biscay(), ship, from, days)
 }
 
-/// Returns such samples at another position, degrees north and east.
-pub fn days_in_waters(place: (f64, f64), ship: &Model, from: &str, days: f64) -> Vec<Sample> {
+/// Returns such samples at another position.
+pub fn days_in_waters(position: Position, ship: &Model, from: &str, days: f64) -> Vec<Sample> {
     let start = Timestamp::parse(from).unwrap();
     let samples = (days * 144.0).round() as u32;
     (0..samples)
         .map(|i| {
             let leg = f64::from(i / 18);
             let time = start.plus_seconds(600.0 * f64::from(i));
-            let mut sample = sample_of(ship, place, time, 107.0 * leg);
+            let mut sample = sample_of(ship, position, time, 107.0 * leg);
             let off = |sign: u32, size_deg: f64| size_deg * unevenness(3 * i + sign);
             let compass_deg = sample.compass.degrees() + off(0, 0.4);
             sample.compass = CompassHeading::new(compass_deg).unwrap();

@@ -3,7 +3,7 @@
 use crate::binnacles::{binnacle, put};
 use crate::person::{ApiResponse, Person};
 use crate::server::TestServer;
-use crate::ship::{Ship, days_at_sea, days_in_waters, true_model};
+use crate::ship::{Ship, days_at_sea, days_in_waters, position, true_model};
 use binnacle_adjustment::binnacle::{Binnacle, Setting};
 use binnacle_adjustment::corrector::effect;
 use binnacle_compass::field::{FieldModel, field};
@@ -58,7 +58,7 @@ impl Job {
     pub async fn on_ship(server: &TestServer, person: Person, true_model: &Model) -> Job {
         let mut samples = days_at_sea(true_model, "2026-11-01T00:00:00Z", 10.0);
         samples.extend(days_in_waters(
-            (10.0, -25.0),
+            position(10.0, -25.0),
             true_model,
             "2026-11-11T00:00:00Z",
             5.0,

@@ -6,7 +6,7 @@ use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{
     ApiResponse, Person, Ship, TestServer, days_at_sea, days_in_waters, model_after_step, passage,
-    true_model,
+    position, true_model,
 };
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::Batch;
@@ -305,7 +305,7 @@ async fn a_card_with_ambiguous_headings_is_refused(server: TestServer) {
     // A field of the ship's own that is small against the earth's in Biscay, and larger in the
     // far south.
     let ship = model_after_step(3000.0, 0.0);
-    let mut strong = days_in_waters((10.0, -25.0), &ship, "2026-11-10T00:00:00Z", 4.0);
+    let mut strong = days_in_waters(position(10.0, -25.0), &ship, "2026-11-10T00:00:00Z", 4.0);
     strong.extend(days_at_sea(&ship, FROM, 5.0));
     nao.put(1, &strong).await.good();
     server.advance(A_WHILE_S);

@@ -3,13 +3,14 @@
 
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::model::Model;
+use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::ship::EarthField;
-use binnacle_server_testing::mail;
-use binnacle_server_testing::on_both;
 use binnacle_server_testing::{
-    Person, Relay, Ship, TestServer, days_at_sea, days_in_waters, model_after_step, true_model,
+    Person, Relay, Ship, TestServer, days_at_sea, days_in_waters, model_after_step, position,
+    true_model,
 };
+use binnacle_server_testing::{mail, on_both};
 use serde_json::{Value, json};
 
 on_both!(
@@ -382,8 +383,8 @@ async fn logged_work_opens_an_epoch_without_an_alert(server: TestServer) {
 }
 
 /// Returns thirty days at sea with the compass deflected for some hours before the end.
-fn deflected(place: (f64, f64), from_h: usize, to_h: usize, deg: Swing) -> Vec<Sample> {
-    let mut samples = days_in_waters(place, &true_model(), "2026-10-21T00:00:00Z", 30.0);
+fn deflected(position: Position, from_h: usize, to_h: usize, deg: Swing) -> Vec<Sample> {
+    let mut samples = days_in_waters(position, &true_model(), "2026-10-21T00:00:00Z", 30.0);
     let place = |hours| samples.len() - 6 * hours;
     let (from, to) = (place(from_h), place(to_h));
     for (i, sample) in samples[from..to].iter_mut().enumerate() {
@@ -394,13 +395,13 @@ fn deflected(place: (f64, f64), from_h: usize, to_h: usize, deg: Swing) -> Vec<S
 }
 
 /// A deflection of two hours, the same on two headings.
-fn short_deflection(place: (f64, f64), hours_ago: usize) -> Vec<Sample> {
-    deflected(place, hours_ago + 2, hours_ago, |_| 3.0)
+fn short_deflection(lat: f64, lon: f64, hours_ago: usize) -> Vec<Sample> {
+    deflected(position(lat, lon), hours_ago + 2, hours_ago, |_| 3.0)
 }
 
 /// An oscillating deflection in the last six hours.
-fn oscillating_deflection(place: (f64, f64)) -> Vec<Sample> {
-    deflected(place, 6, 0, |i| 6.0 * (0.7 * i).sin())
+fn oscillating_deflection(lat: f64, lon: f64) -> Vec<Sample> {
+    deflected(position(lat, lon), 6, 0, |i| 6.0 * (0.7 * i).sin())
 }
 
 async fn last_change(person: &Person, ship: &Ship) -> Value {
@@ -416,18 +417,18 @@ async fn last_change(person: &Person, ship: &Ship) -> Value {
 async fn a_storm_is_named_when_two_ships_were_disturbed(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     let nao = server.ship(&ada, "Nao").await;
-    send_and_analyse(&server, &nao, 1, &short_deflection((48.0, -6.0), 14)).await;
+    send_and_analyse(&server, &nao, 1, &short_deflection(48.0, -6.0, 14)).await;
     let alone = last_change(&ada, &nao).await;
     assert_eq!(alone["cause"], "local_anomaly", "{alone}");
 
     // A ship disturbed in other hours is not part of it.
     let victoria = server.ship(&eve, "Victoria").await;
-    send_and_analyse(&server, &victoria, 1, &short_deflection((30.0, -40.0), 62)).await;
+    send_and_analyse(&server, &victoria, 1, &short_deflection(30.0, -40.0, 62)).await;
     assert_eq!(last_change(&eve, &victoria).await["cause"], "local_anomaly");
     assert_eq!(last_change(&ada, &nao).await, alone);
 
     let gaviota = server.ship(&eve, "Gaviota").await;
-    send_and_analyse(&server, &gaviota, 1, &short_deflection((58.0, -20.0), 14)).await;
+    send_and_analyse(&server, &gaviota, 1, &short_deflection(58.0, -20.0, 14)).await;
     let stormy = last_change(&ada, &nao).await;
     assert_eq!(stormy["cause"], "magnetic_storm", "{stormy}");
     let text = stormy.to_string();
@@ -443,14 +444,14 @@ async fn a_storm_is_named_when_two_ships_were_disturbed(server: TestServer) {
 async fn an_alert_is_updated_by_other_ships_without_a_new_fit(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     let nao = server.ship(&ada, "Nao").await;
-    send_and_analyse(&server, &nao, 1, &oscillating_deflection((48.0, -6.0))).await;
+    send_and_analyse(&server, &nao, 1, &oscillating_deflection(48.0, -6.0)).await;
     let before = open_alerts(&ada).await;
     assert_eq!(before.len(), 1, "{before:?}");
     assert_eq!(before[0]["severity"], "warning");
     assert!(!before[0]["evidence"].to_string().contains("other ship"));
 
     let gaviota = server.ship(&eve, "Gaviota").await;
-    send_and_analyse(&server, &gaviota, 1, &oscillating_deflection((58.0, -20.0))).await;
+    send_and_analyse(&server, &gaviota, 1, &oscillating_deflection(58.0, -20.0)).await;
     // Ada's alert follows by itself.
     server.advance(100.0);
     server.work().await;
@@ -486,7 +487,8 @@ async fn a_swinging_compass_raises_one_alert_whatever_the_amplitude(server: Test
     let mut causes = Vec::new();
     for (name, swing) in swings {
         let ship = server.ship(&ada, name).await;
-        send_and_analyse(&server, &ship, 1, &deflected((48.0, -6.0), 6, 0, swing)).await;
+        let samples = deflected(position(48.0, -6.0), 6, 0, swing);
+        send_and_analyse(&server, &ship, 1, &samples).await;
         let open = open_alerts(&ada).await;
         let of_her: Vec<&Value> = open.iter().filter(|a| a["vessel_name"] == name).collect();
         assert_eq!(of_her.len(), 1, "{name}: {open:?}");

@@ -6,7 +6,7 @@ use binnacle_server_testing::work_orders::{
     Job, LAMBDA, completion_details, predicted_model, reading, reading_on_ship,
 };
 use binnacle_server_testing::{
-    TestServer, days_at_sea, days_in_waters, model_after_step, true_model,
+    TestServer, days_at_sea, days_in_waters, model_after_step, position, true_model,
 };
 use serde_json::{Value, json};
 
@@ -217,7 +217,7 @@ async fn an_adjustment_clears_earlier_alerts_of_the_ship(server: TestServer) {
     let now = model_after_step(3000.0, 2000.0);
     let mut samples = days_at_sea(&true_model(), "2026-10-27T00:00:00Z", 12.0);
     samples.extend(days_in_waters(
-        (10.0, -25.0),
+        position(10.0, -25.0),
         &true_model(),
         "2026-11-08T00:00:00Z",
         7.0,
