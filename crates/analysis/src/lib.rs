@@ -16,4 +16,7 @@ pub mod change;
 
 pub mod analyse;
 
+#[allow(missing_docs, dead_code)]
+pub mod tracking;
+
 pub mod advice;

@@ -28,13 +28,14 @@ mod undated_rows;
 mod whitening;
 
 pub(crate) use noise_process::{
-    COMPASS_SWING_S, SCHULER_DAMPING, SCHULER_PER_S, SLOW_GYRO_S, Transition, VARIATION_NM,
+    COMPASS_SWING_S, SATELLITE_S, SCHULER_DAMPING, SCHULER_PER_S, SLOW_GYRO_S, Transition,
+    VARIATION_NM, swing_over,
 };
 pub(crate) use prior::POPULATION_SD;
 pub use prior::Prior;
 pub(crate) use prior::unseen_sd_nt;
 pub(crate) use robust_loss::{robust_loss, weight};
-pub(crate) use rows::{
+pub(crate) use rows::{Direction, Needle, Scatter, WhiteNoise,
     CONSTANT, LinearisationPoint, OFFSET_SD_DEG, Row, RowFrame, UNKNOWNS, USUAL_REFERENCE_SHARE,
     Unknowns, frames, row,
 };

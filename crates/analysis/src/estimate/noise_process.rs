@@ -23,7 +23,7 @@ pub(crate) const SLOW_GYRO_S: f64 = 3.0 * 86_400.0;
 /// Correlation time of the compass's swing about a wrong mean after a disturbance.
 pub(crate) const COMPASS_SWING_S: f64 = 20.0 * 60.0;
 /// Correlation time of a satellite compass's reflections.
-const SATELLITE_S: f64 = 30.0 * 60.0;
+pub(crate) const SATELLITE_S: f64 = 30.0 * 60.0;
 /// Correlation distance of the crust's own field.
 pub(crate) const VARIATION_NM: f64 = 60.0;
 /// Time for which the drift level holds.
@@ -109,7 +109,7 @@ impl TimeStep {
 }
 
 /// Returns the damped swing and its rate (in units of the swing) after `seconds`.
-fn swing_over(seconds: f64) -> [[f64; 2]; 2] {
+pub(crate) fn swing_over(seconds: f64) -> [[f64; 2]; 2] {
     let phase = SCHULER_PER_S * seconds;
     let damped = (1.0 - SCHULER_DAMPING * SCHULER_DAMPING).sqrt();
     let shrink = (-SCHULER_DAMPING * phase).exp();

@@ -11,4 +11,4 @@ pub(crate) use row::{
     CONSTANT, LinearisationPoint, OFFSET_SD_DEG, Row, RowFrame, UNKNOWNS, USUAL_REFERENCE_SHARE,
     Unknowns, frames, plain_residual, row, to_physical_units,
 };
-pub(crate) use scatter::WhiteNoise;
+pub(crate) use scatter::{Scatter, WhiteNoise};

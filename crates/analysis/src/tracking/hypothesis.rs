@@ -1,0 +1,161 @@
+//! One account of what happened: a filter, and the events that it supposes.
+
+use super::filter::{Filter, Innovation, Marginal};
+use super::kinds::{Ending, Kind};
+use super::levels::Levels;
+use super::row::Row;
+use super::scalar::{Scalar, Silent, deviation, difference};
+use super::states::GYRO;
+use super::transition::Transition;
+use binnacle_compass::time::Timestamp;
+
+/// Growth of a drifting ship's (bx, by), nT squared a second: 2 µT in thirty days.
+const DRIFTING_NT2_PER_S: f64 = 2000.0 * 2000.0 / (30.0 * 86_400.0);
+/// Growth of a ramping gyro's error, degrees squared a second: a degree in a day.
+const RAMP_DEG2_PER_S: f64 = 1.0 / 86_400.0;
+/// Memory and standard deviation of a disturbance of the variation, where H is usual.
+const DISTURBANCE_S: f64 = 3600.0;
+const DISTURBANCE_DEG: f64 = 2.0;
+
+/// Supposed event.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Event {
+    pub(crate) kind: Kind,
+    /// Last row before it, and its time.
+    pub(crate) after: usize,
+    pub(crate) from: Timestamp,
+    /// First row after its end.
+    pub(crate) until: Option<Timestamp>,
+    /// States before it, for its end.
+    pub(crate) before: Option<Box<Marginal>>,
+}
+
+/// Account of what happened.
+#[derive(Clone, Debug)]
+pub(crate) struct Hypothesis {
+    pub(crate) filter: Filter,
+    pub(crate) events: Vec<Event>,
+    /// Logarithm of the prior probability of its events.
+    pub(crate) log_prior: f64,
+    /// Number of the starting guess that it descends from.
+    pub(crate) start: usize,
+}
+
+/// Innovations of a row, with the loads that they had.
+#[derive(Clone, Debug)]
+pub(crate) struct Read {
+    pub(crate) difference: Option<Innovation>,
+    pub(crate) deviation: Innovation,
+    pub(crate) load: Scalar,
+}
+
+impl Hypothesis {
+    /// Returns the logarithm of its weight, to be compared with others' of the same rows.
+    pub(crate) fn log_weight(&self) -> f64 {
+        self.log_prior + self.filter.log_likelihood
+    }
+
+    /// Returns the kinds of its events that last.
+    pub(crate) fn lasting(&self) -> impl Iterator<Item = Kind> {
+        let lasting = self.events.iter().filter(|event| event.until.is_none());
+        lasting.map(|event| event.kind)
+    }
+
+    pub(crate) fn has(&self, kind: Kind) -> bool {
+        self.lasting().any(|lasting| lasting == kind)
+    }
+
+    fn silent(&self) -> Silent {
+        Silent {
+            compass: self.has(Kind::StuckCard),
+            gyro: self.has(Kind::StuckGyro),
+            satellite: self.has(Kind::StuckSatellite),
+        }
+    }
+
+    /// Reads the next row.
+    pub(crate) fn read(&mut self, row: &Row, levels: &Levels, usual: &Transition) -> Read {
+        let mut own;
+        let transition = if self.events.iter().all(|event| event.until.is_some()) {
+            usual
+        } else {
+            own = usual.clone();
+            self.adjust(&mut own, row);
+            &own
+        };
+        self.filter.advance(transition);
+        let silent = self.silent();
+        let by_difference = difference(row, &self.filter.mean, levels, silent)
+            .map(|scalar| self.filter.update(&scalar));
+        let load = deviation(row, &self.filter.mean, levels, silent);
+        Read {
+            difference: by_difference,
+            deviation: self.filter.update(&load),
+            load,
+        }
+    }
+
+    fn adjust(&self, transition: &mut Transition, row: &Row) {
+        for kind in self.lasting() {
+            match kind {
+                Kind::ShipDrift => transition.drift(DRIFTING_NT2_PER_S * row.seconds),
+                Kind::GyroRamp => transition.added[GYRO] += RAMP_DEG2_PER_S * row.seconds,
+                Kind::Disturbance => {
+                    transition.disturb(row.seconds, DISTURBANCE_S, DISTURBANCE_DEG);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Returns the hypothesis with one more event after row `after`.
+    pub(crate) fn with_event(
+        &self,
+        kind: Kind,
+        after: usize,
+        from: Timestamp,
+        log_prior: f64,
+    ) -> Hypothesis {
+        let mut next = self.clone();
+        let states = kind.returning_states();
+        let before = (!states.is_empty())
+            .then(|| Box::new(Marginal::from_filter(&self.filter, &states)));
+        for jump in kind.row().jumps {
+            next.filter.covariance[jump.state][jump.state] += jump.sd * jump.sd;
+        }
+        next.events.push(Event {
+            kind,
+            after,
+            from,
+            until: None,
+            before,
+        });
+        next.log_prior += log_prior;
+        next
+    }
+
+    /// Returns the hypotheses in which one of the lasting events ends now.
+    pub(crate) fn endings(&self, now: Timestamp, spacing_s: f64, in_port: bool) -> Vec<Hypothesis> {
+        let lasting = self.events.iter().enumerate();
+        let lasting = lasting.filter(|(_, event)| event.until.is_none());
+        let ended = lasting.filter_map(|(i, event)| {
+            let probability = match event.kind.row().ending {
+                Ending::After(mean_s) => spacing_s / mean_s,
+                Ending::InPort(share) if in_port => share,
+                _ => return None,
+            };
+            Some(self.with_end(i, now, probability.min(0.5).ln()))
+        });
+        ended.collect()
+    }
+
+    fn with_end(&self, event: usize, now: Timestamp, log_prior: f64) -> Hypothesis {
+        let mut next = self.clone();
+        next.events[event].until = Some(now);
+        if let Some(before) = next.events[event].before.take() {
+            next.filter.restore(&before);
+        }
+        next.log_prior += log_prior;
+        next
+    }
+}
