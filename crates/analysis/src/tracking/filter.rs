@@ -1,8 +1,8 @@
 //! Kalman filter over all states.
 
 use super::scalar::Scalar;
-use super::states::{SCHULER, STATES};
-use super::transition::Transition;
+use super::states::STATES;
+use super::transition::{Pair, Transition};
 use crate::estimate::{robust_loss, weight};
 
 /// Mean and covariance of the states, and the log likelihood of what was read.
@@ -53,32 +53,33 @@ impl Filter {
                 *x *= keep * other;
             }
         }
-        self.swing(t);
+        for pair in &t.pairs {
+            self.turn(pair);
+        }
         for (i, variance) in t.added.iter().enumerate() {
             self.covariance[i][i] += variance;
         }
-        let [s, r] = [SCHULER, SCHULER + 1];
-        let [[ss, sr], [_, rr]] = t.schuler_added;
-        self.covariance[s][s] += ss;
-        self.covariance[s][r] += sr;
-        self.covariance[r][s] += sr;
-        self.covariance[r][r] += rr;
     }
 
-    /// Turns the Schuler pair by its transition.
-    fn swing(&mut self, t: &Transition) {
-        let [[a, b], [c, d]] = t.schuler;
-        let turned = |swing: f64, rate: f64| (a * swing + b * rate, c * swing + d * rate);
-        let [s, r] = [SCHULER, SCHULER + 1];
+    /// Moves a state and its rate by their own transition.
+    fn turn(&mut self, pair: &Pair) {
+        let [[a, b], [c, d]] = pair.matrix;
+        let turned = |value: f64, rate: f64| (a * value + b * rate, c * value + d * rate);
+        let [s, r] = [pair.state, pair.state + 1];
         (self.mean[s], self.mean[r]) = turned(self.mean[s], self.mean[r]);
         for row in &mut self.covariance {
             (row[s], row[r]) = turned(row[s], row[r]);
         }
         for j in 0..STATES {
-            let (swing, rate) = turned(self.covariance[s][j], self.covariance[r][j]);
-            self.covariance[s][j] = swing;
+            let (value, rate) = turned(self.covariance[s][j], self.covariance[r][j]);
+            self.covariance[s][j] = value;
             self.covariance[r][j] = rate;
         }
+        let [[ss, sr], [_, rr]] = pair.added;
+        self.covariance[s][s] += ss;
+        self.covariance[s][r] += sr;
+        self.covariance[r][s] += sr;
+        self.covariance[r][r] += rr;
     }
 
     /// Returns the product of the covariance with a load.
@@ -168,13 +169,13 @@ impl Marginal {
     }
 }
 
-/// Returns the product of two vectors, in four independent sums.
+/// Returns the product of two vectors, in two independent sums.
 pub(crate) fn dot(a: &[f64; STATES], b: &[f64; STATES]) -> f64 {
-    let mut sums = [0.0; 4];
-    for (a, b) in a.as_chunks::<4>().0.iter().zip(b.as_chunks::<4>().0) {
+    let mut sums = [0.0; 2];
+    for (a, b) in a.as_chunks::<2>().0.iter().zip(b.as_chunks::<2>().0) {
         for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
             *sum += a * b;
         }
     }
-    (sums[0] + sums[2]) + (sums[1] + sums[3])
+    sums[0] + sums[1]
 }

@@ -13,9 +13,9 @@ use binnacle_compass::time::Timestamp;
 const DRIFTING_NT2_PER_S: f64 = 2000.0 * 2000.0 / (30.0 * 86_400.0);
 /// Growth of a ramping gyro's error, degrees squared a second: a degree in a day.
 const RAMP_DEG2_PER_S: f64 = 1.0 / 86_400.0;
-/// Memory and standard deviation of a disturbance of the variation, where H is usual.
-const DISTURBANCE_S: f64 = 3600.0;
-const DISTURBANCE_DEG: f64 = 2.0;
+/// Memory and standard deviation of a storm's variation, where H is usual.
+const STORM_S: f64 = 3600.0;
+const STORM_DEG: f64 = 1.2;
 
 /// Supposed event.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,9 +100,8 @@ impl Hypothesis {
             match kind {
                 Kind::ShipDrift => transition.drift(DRIFTING_NT2_PER_S * row.seconds),
                 Kind::GyroRamp => transition.added[GYRO] += RAMP_DEG2_PER_S * row.seconds,
-                Kind::Disturbance => {
-                    transition.disturb(row.seconds, DISTURBANCE_S, DISTURBANCE_DEG);
-                }
+                Kind::Storm => transition.disturb(row.seconds, STORM_S, STORM_DEG),
+                Kind::Anomaly => transition.pass_anomaly(row.seconds),
                 _ => {}
             }
         }

@@ -1,6 +1,6 @@
 //! The table of events: how often each kind happens, what it moves, and how it ends.
 
-use super::states::{ALIGNMENT, BX, BY, GYRO, SATELLITE, SETTLING};
+use super::states::{ALIGNMENT, ANOMALY, BX, BY, GYRO, SATELLITE, SETTLING};
 use binnacle_compass::ship::PARAMETERS;
 
 /// Kind of event.
@@ -22,8 +22,10 @@ pub(crate) enum Kind {
     GyroSettling,
     /// Steady growth of the gyro's error.
     GyroRamp,
-    /// Disturbance of the earth's field: storm or anomaly.
-    Disturbance,
+    /// Magnetic storm.
+    Storm,
+    /// Local anomaly of the crust.
+    Anomaly,
     /// Card that does not turn.
     StuckCard,
     /// Gyro that says nothing.
@@ -70,7 +72,7 @@ const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;
 
 /// All kinds.
-pub(crate) const KINDS: [KindRow; 12] = [
+pub(crate) const KINDS: [KindRow; 13] = [
     KindRow {
         kind: Kind::Strike,
         a_year: 0.1,
@@ -136,11 +138,18 @@ pub(crate) const KINDS: [KindRow; 12] = [
         ending: Ending::After(6.0 * DAY_S),
     },
     KindRow {
-        kind: Kind::Disturbance,
-        a_year: 15.0,
+        kind: Kind::Storm,
+        a_year: 8.0,
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(8.0 * HOUR_S),
+    },
+    KindRow {
+        kind: Kind::Anomaly,
+        a_year: 10.0,
+        a_call: 0.0,
+        jumps: &[],
+        ending: Ending::After(3.0 * HOUR_S),
     },
     KindRow {
         kind: Kind::StuckCard,
@@ -171,6 +180,11 @@ impl Kind {
         &KINDS[self as usize]
     }
 
+    /// Returns true for a disturbance of the earth's own field.
+    pub(crate) fn passes_by(self) -> bool {
+        matches!(self, Kind::Storm | Kind::Anomaly)
+    }
+
     /// Returns true for an event that leaves another deviation.
     pub(crate) fn changes_deviation(self) -> bool {
         matches!(
@@ -185,6 +199,7 @@ impl Kind {
             Kind::Strike | Kind::Cargo => (0..PARAMETERS).collect(),
             Kind::GyroStep | Kind::GyroRamp => vec![GYRO],
             Kind::SatelliteStep => vec![SATELLITE],
+            Kind::Anomaly => vec![ANOMALY, ANOMALY + 1],
             _ => Vec::new(),
         }
     }

@@ -4,7 +4,7 @@ use super::filter::dot;
 use super::levels::{Level, Levels};
 use super::row::Row;
 use super::states::{
-    ALIGNMENT, BX, BY, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW, HEEL, HEEL_NT_PER_RAD, LAG,
+    ALIGNMENT, ANOMALY, BX, BY, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW, HEEL, HEEL_NT_PER_RAD, LAG,
     LIST, LIST_NT, REFLECTION, RETENTION, SATELLITE, SCHULER, SETTLING, SPEED, STATES, SWING,
     USUAL_H_NT, VARIATION, parameters,
 };
@@ -157,6 +157,7 @@ fn deviation_by(row: &Row, mean: &[f64; STATES], reference: &Reference, variance
     load[SWING] = 1.0;
     load[FRICTION] = by_h;
     load[VARIATION] = by_h;
+    load[ANOMALY] = by_h;
     load[DAILY] = by_h * row.daily[0];
     load[DAILY + 1] = by_h * row.daily[1];
     let constant = dot(&load, mean);

@@ -8,7 +8,7 @@ use binnacle_compass::model::Parameters;
 use binnacle_compass::ship::PARAMETERS;
 
 /// Number of states.
-pub(crate) const STATES: usize = 28;
+pub(crate) const STATES: usize = 30;
 
 /// Fore-and-aft permanent field; the other six parameters follow in the order of
 /// [`Parameters`].
@@ -49,6 +49,8 @@ pub(crate) const SATELLITE: usize = 25;
 pub(crate) const REFLECTION: usize = 26;
 /// Lag of the references, minutes.
 pub(crate) const LAG: usize = 27;
+/// Local anomaly of the variation and its rate an hour, degrees.
+pub(crate) const ANOMALY: usize = 28;
 
 /// Memories of retained magnetism, seconds (DOMAIN: hours to days).
 pub(crate) const RETENTION_S: [f64; 2] = [4.0 * 3600.0, 16.0 * 3600.0];

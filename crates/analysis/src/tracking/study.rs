@@ -15,8 +15,8 @@ pub struct Run {
     pub rows: usize,
     pub bank_mean: f64,
     pub replays: usize,
-    pub mean: [f64; 28],
-    pub sd: [f64; 28],
+    pub mean: [f64; 30],
+    pub sd: [f64; 30],
     pub levels: Vec<(String, f64)>,
     /// Times at which the lead came to suppose another list of events.
     pub told: Vec<(String, Timestamp, Timestamp, Option<Timestamp>)>,
@@ -45,6 +45,14 @@ pub fn run(samples: &[Sample]) -> Run {
         rows += 1;
         bank += tracker.bank.len();
         z.push((t.read.deviation.value, t.read.deviation.variance, t.read.difference.map_or(0.0, |d| d.z_squared())));
+        if std::env::var("AT").is_ok_and(|at| sample.time.to_string().starts_with(&at)) {
+            let best = tracker.bank.iter().map(|h| h.log_weight()).fold(f64::NEG_INFINITY, f64::max);
+            eprintln!("{} v {:.2} sd {:.2} hdg {:.0}", sample.time, t.read.deviation.value, t.read.deviation.variance.sqrt(), sample.compass.degrees());
+            for h in tracker.bank.iter().take(8) {
+                let ev: Vec<String> = h.events.iter().rev().take(3).map(|e| format!("{:?} {} {}", e.kind, &e.from.to_string()[5..16], e.until.map_or(String::new(), |u| u.to_string()[5..16].to_string()))).collect();
+                eprintln!("      {:.1} prior {:.1} {}", h.log_weight() - best, h.log_prior, ev.join(" | "));
+            }
+        }
         let events: Vec<String> = tracker.bank[0].events.iter().map(|e| format!("{:?} {}{}", e.kind, e.from, e.until.map_or(String::new(), |u| format!(" until {u}")))).collect();
         if leads.last().is_none_or(|(_, last)| *last != events) {
             leads.push((sample.time, events));

@@ -98,7 +98,7 @@ impl Class {
     fn of(kind: Kind) -> Class {
         match kind {
             Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift => Class::Ship,
-            Kind::Disturbance => Class::Passing,
+            Kind::Storm | Kind::Anomaly => Class::Passing,
             Kind::StuckCard => Class::Compass,
             _ => Class::Reference,
         }
@@ -230,6 +230,26 @@ impl Tracker {
         weights.fold(f64::NEG_INFINITY, f64::max)
     }
 
+    /// Weighs every kind of event where it is likeliest, before another hypothesis takes the
+    /// lead: whatever rivals it must have been heard.
+    fn hear_rivals(&mut self) {
+        for kind in &KINDS {
+            if self.bank[0].has(kind.kind) && !kind.kind.changes_deviation() {
+                continue;
+            }
+            let Some((place, log_prior, score)) = self.best_start(kind) else {
+                continue;
+            };
+            let from = self.checkpoints[place].time;
+            if self.was_tried(kind.kind, from, score) {
+                continue;
+            }
+            self.tried.push(Tried { kind: kind.kind, from, score });
+            let hypothesis = self.replay(place, kind.kind, log_prior);
+            self.bank.push(hypothesis);
+        }
+    }
+
     /// Proposes events that the innovations suggest, and replays the rows under them.
     fn suppose_events(&mut self) {
         let lead = &self.bank[0];
@@ -249,21 +269,27 @@ impl Tracker {
                 tried.push(Tried { kind: kind.kind, from, score });
             }
         }
-        let rivals: Vec<(usize, &'static KindRow, f64)> = proposals
-            .iter()
-            .filter(|(_, kind, _)| kind.kind != Kind::Disturbance)
-            .map(|(place, _, _)| *place)
-            .filter(|place| {
-                !lead.has(Kind::Disturbance)
-                    && !self.was_tried(Kind::Disturbance, self.checkpoints[*place].time, f64::NEG_INFINITY)
-            })
-            .map(|place| (place, Kind::Disturbance.row(), self.log_prior(place, Kind::Disturbance.row()).unwrap_or(-9.0)))
-            .collect();
-        for (place, kind, _) in rivals {
-            let from = self.checkpoints[place].time;
-            if tried.iter().any(|t: &Tried| t.kind == kind.kind && t.from == from) { continue; }
-            tried.push(Tried { kind: kind.kind, from, score: SUPPOSED });
-            proposals.push((place, kind, self.log_prior(place, kind).unwrap_or(-9.0)));
+        // Disturbances rival whatever else is supposed: where that began, and where they are
+        // likeliest themselves.
+        for rival in [Kind::Storm.row(), Kind::Anomaly.row()] {
+            if lead.has(rival.kind) || proposals.is_empty() {
+                continue;
+            }
+            let own = self.best_start(rival).map(|(place, _, _)| place);
+            let places: Vec<usize> =
+                proposals.iter().map(|(place, _, _)| *place).chain(own).collect();
+            for place in places {
+                let from = self.checkpoints[place].time;
+                let Some(log_prior) = self.log_prior(place, rival) else {
+                    continue;
+                };
+                let same = |t: &Tried| t.kind == rival.kind && t.from == from;
+                if tried.iter().any(same) || self.was_tried(rival.kind, from, f64::NEG_INFINITY) {
+                    continue;
+                }
+                tried.push(Tried { kind: rival.kind, from, score: SUPPOSED });
+                proposals.push((place, rival, log_prior));
+            }
         }
         self.tried.extend(tried);
         for (place, kind, log_prior) in proposals {
@@ -315,7 +341,7 @@ impl Tracker {
             };
             let sums = self.sums.since(&checkpoint.sums);
             let factor = match kind.kind {
-                Kind::Disturbance => 0.5 * sums.excess(),
+                Kind::Storm | Kind::Anomaly => 0.5 * sums.excess(),
                 Kind::StuckCard | Kind::StuckGyro | Kind::StuckSatellite => {
                     if !self.seems_stuck(kind.kind, checkpoint.after) {
                         continue;
@@ -378,6 +404,9 @@ impl Tracker {
     fn prune(&mut self) {
         let lead_weight = self.bank[0].log_weight();
         let lead_events = self.bank[0].events.len();
+        if self.best() > lead_weight + TAKES_LEAD {
+            self.hear_rivals();
+        }
         let best = self.best();
         let leader = if best > lead_weight + TAKES_LEAD {
             self.bank.iter().position(|h| h.log_weight() >= best).unwrap_or(0)

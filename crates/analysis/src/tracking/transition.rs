@@ -3,7 +3,7 @@
 use super::levels::{Level, Levels};
 use super::row::Row;
 use super::states::{
-    BX, BY, FRICTION, GYRO_SLOW, LIST, LIST_NT, REFLECTION, SETTLING, STATES, SWING, VARIATION,
+    ANOMALY, BX, BY, FRICTION, GYRO_SLOW, LIST, LIST_NT, REFLECTION, SCHULER, SETTLING, STATES, SWING, VARIATION,
 };
 use crate::estimate::{
     COMPASS_SWING_S, POPULATION_SD, SATELLITE_S, SLOW_GYRO_S, VARIATION_NM, swing_over,
@@ -25,6 +25,9 @@ const KICK_DEG: f64 = 20.0;
 const KICK: f64 = 2.0;
 /// Greatest time since a turn when the ship has settled again, seconds.
 const SETTLED_S: f64 = 900.0;
+/// Memory and standard deviation of a local anomaly as the ship passes it, where H is usual.
+const ANOMALY_S: f64 = 3600.0;
+const ANOMALY_DEG: f64 = 2.5;
 /// Step and drift of the induced parameters over the population, for a step or drift of
 /// (bx, by) of the population's size.
 const INDUCED_SHARE: f64 = 0.5;
@@ -36,9 +39,16 @@ pub(crate) struct Transition {
     pub(crate) keep: [f64; STATES],
     /// Variance added to each state.
     pub(crate) added: [f64; STATES],
-    /// Schuler pair's own transition and added variance.
-    pub(crate) schuler: [[f64; 2]; 2],
-    pub(crate) schuler_added: [[f64; 2]; 2],
+    /// States that swing with a rate of their own.
+    pub(crate) pairs: Vec<Pair>,
+}
+
+/// Transition of a state and its rate, which follows it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair {
+    pub(crate) state: usize,
+    pub(crate) matrix: [[f64; 2]; 2],
+    pub(crate) added: [[f64; 2]; 2],
 }
 
 impl Transition {
@@ -47,8 +57,7 @@ impl Transition {
         let mut t = Transition {
             keep: [1.0; STATES],
             added: [0.0; STATES],
-            schuler: [[1.0, 0.0], [0.0, 1.0]],
-            schuler_added: [[0.0; 2]; 2],
+            pairs: Vec::with_capacity(2),
         };
         let seconds = row.seconds;
         let turned = row.turned_deg.abs();
@@ -101,18 +110,44 @@ impl Transition {
     fn swing(&mut self, seconds: f64, kicked: bool, sd: f64) {
         let [[a, b], [c, d]] = swing_over(seconds);
         let variance = sd * sd;
-        self.schuler = [[a, b], [c, d]];
-        self.schuler_added = [
-            [variance * (1.0 - a * a - b * b), -variance * (a * c + b * d)],
-            [-variance * (a * c + b * d), variance * (1.0 - c * c - d * d)],
+        let across = -variance * (a * c + b * d);
+        let mut added = [
+            [variance * (1.0 - a * a - b * b), across],
+            [across, variance * (1.0 - c * c - d * d)],
         ];
         if kicked {
             let [[_, swing], [_, rate]] = swing_over(seconds.min(SETTLED_S));
             let kick = KICK * KICK * variance;
-            self.schuler_added[0][0] += kick * swing * swing;
-            self.schuler_added[0][1] += kick * swing * rate;
-            self.schuler_added[1][0] += kick * swing * rate;
-            self.schuler_added[1][1] += kick * rate * rate;
+            added[0][0] += kick * swing * swing;
+            added[0][1] += kick * swing * rate;
+            added[1][0] += kick * swing * rate;
+            added[1][1] += kick * rate * rate;
         }
+        self.pairs.push(Pair {
+            state: SCHULER,
+            matrix: [[a, b], [c, d]],
+            added,
+        });
+    }
+
+    /// Lets a local anomaly come and go smoothly: a Gaussian process of the Matérn kind, once
+    /// differentiable, of memory [`ANOMALY_S`] (Rasmussen & Williams 2006, eq. 4.17).
+    pub(crate) fn pass_anomaly(&mut self, seconds: f64) {
+        let hours = seconds / 3600.0;
+        let decay = 3.0_f64.sqrt() / (ANOMALY_S / 3600.0);
+        let keep = (-decay * hours).exp();
+        let [a, b] = [keep * (1.0 + decay * hours), keep * hours];
+        let [c, d] = [-keep * decay * decay * hours, keep * (1.0 - decay * hours)];
+        let value = ANOMALY_DEG * ANOMALY_DEG;
+        let rate = value * decay * decay;
+        let across = -(a * c * value + b * d * rate);
+        self.pairs.push(Pair {
+            state: ANOMALY,
+            matrix: [[a, b], [c, d]],
+            added: [
+                [value - a * a * value - b * b * rate, across],
+                [across, rate - c * c * value - d * d * rate],
+            ],
+        });
     }
 }
