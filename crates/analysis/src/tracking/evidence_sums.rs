@@ -16,7 +16,10 @@ use nalgebra::{DMatrix, DVector};
 /// States whose jumps are looked for.
 pub(crate) const WATCHED: [usize; 5] = [BX, BY, ALIGNMENT, GYRO, SATELLITE];
 /// Largest square of an innovation that counts as a disturbance: a wild reading is no more.
-const LARGEST_SQUARE: f64 = 9.0;
+const LARGEST_SQUARE: f64 = 16.0;
+/// Cost in squares of taking the noise for a disturbance's: twice the logarithm of the ratio of
+/// standard deviations.
+const WIDER_COST: f64 = 2.0;
 /// Innovations over which the usual square is taken.
 const USUAL_ROWS: f64 = 2000.0;
 const SUMS: usize = WATCHED.len();
@@ -56,7 +59,7 @@ impl EvidenceSums {
         let square = z_squared.min(LARGEST_SQUARE);
         let usual = self.usual.unwrap_or(1.0);
         self.usual = Some(usual + (square - usual) / USUAL_ROWS);
-        self.excess += square - usual;
+        self.excess += square - usual - WIDER_COST;
     }
 
     /// Returns the sums since an earlier time.

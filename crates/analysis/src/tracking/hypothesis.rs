@@ -17,6 +17,11 @@ const RAMP_DEG2_PER_S: f64 = 1.0 / 86_400.0;
 const STORM_S: f64 = 3600.0;
 const STORM_DEG: f64 = 1.2;
 
+/// Probability of a wild reading.
+const WILD: f64 = 0.004;
+/// Ratio of a prediction's variance to the reading's from which the reading teaches much.
+const TEACHES: f64 = 20.0;
+
 /// Supposed event.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Event {
@@ -39,6 +44,8 @@ pub(crate) struct Hypothesis {
     pub(crate) log_prior: f64,
     /// Number of the starting guess that it descends from.
     pub(crate) start: usize,
+    /// Row whose reading it holds to be wild, the last one.
+    pub(crate) wild: Option<usize>,
 }
 
 /// Innovations of a row, with the loads that they had.
@@ -49,7 +56,20 @@ pub(crate) struct Read {
     pub(crate) load: Scalar,
 }
 
+impl Read {
+    /// Returns true if the row says more than was known before: then a wild reading would do
+    /// harm that later ones take long to mend.
+    pub(crate) fn teaches(&self) -> bool {
+        self.deviation.variance > TEACHES * self.load.variance
+    }
+}
+
 impl Hypothesis {
+    /// Returns true if it takes nothing from the compass.
+    pub(crate) fn is_muted(&self) -> bool {
+        self.silent().compass
+    }
+
     /// Returns the logarithm of its weight, to be compared with others' of the same rows.
     pub(crate) fn log_weight(&self) -> f64 {
         self.log_prior + self.filter.log_likelihood
@@ -75,6 +95,35 @@ impl Hypothesis {
 
     /// Reads the next row.
     pub(crate) fn read(&mut self, row: &Row, levels: &Levels, usual: &Transition) -> Read {
+        self.read_with(row, levels, usual, self.silent())
+    }
+
+    /// Returns the hypothesis after a row whose compass reading is wild.
+    pub(crate) fn after_wild(
+        &self,
+        number: usize,
+        row: &Row,
+        levels: &Levels,
+        usual: &Transition,
+    ) -> Hypothesis {
+        let mut next = self.clone();
+        let silent = Silent {
+            compass: true,
+            ..self.silent()
+        };
+        next.read_with(row, levels, usual, silent);
+        next.log_prior += WILD.ln();
+        next.wild = Some(number);
+        next
+    }
+
+    fn read_with(
+        &mut self,
+        row: &Row,
+        levels: &Levels,
+        usual: &Transition,
+        silent: Silent,
+    ) -> Read {
         let mut own;
         let transition = if self.events.iter().all(|event| event.until.is_some()) {
             usual
@@ -84,7 +133,6 @@ impl Hypothesis {
             &own
         };
         self.filter.advance(transition);
-        let silent = self.silent();
         let by_difference = difference(row, &self.filter.mean, levels, silent)
             .map(|scalar| self.filter.update(&scalar));
         let load = deviation(row, &self.filter.mean, levels, silent);

@@ -186,14 +186,22 @@ impl Tracker {
         let levels = *self.learning.levels();
         let usual = Transition::to(row, &levels);
         let mut leads = None;
+        let best = self.best();
+        let mut wild = Vec::new();
         for (i, hypothesis) in self.bank.iter_mut().enumerate() {
-            let before = hypothesis.filter.log_likelihood;
+            let before = hypothesis.clone();
+            let is_plausible = hypothesis.log_weight() > best - 5.0;
             let read = hypothesis.read(row, &levels, &usual);
+            if is_plausible && read.teaches() && !hypothesis.is_muted() {
+                wild.push(before.after_wild(self.count, row, &levels, &usual));
+            }
+            let before = before.filter.log_likelihood;
             if i == 0 {
                 let gained = hypothesis.filter.log_likelihood - before;
                 leads = Some((read, gained));
             }
         }
+        self.bank.extend(wild);
         let (read, gained) = leads.expect("the bank is never empty");
         let learns = self.is_settled();
         let lead = &self.bank[0].filter;
@@ -397,6 +405,9 @@ impl Tracker {
             let usual = Transition::to(row, &levels);
             hypothesis.read(row, &levels, &usual);
         }
+        if std::env::var("AT").is_ok_and(|at| self.rows.back().is_some_and(|r| r.time.to_string().starts_with(&at))) {
+            eprintln!("      REPLAY {kind:?} from {from} prior {log_prior:.1}: {:.1}", hypothesis.log_weight() - self.best());
+        }
         hypothesis
     }
 
@@ -496,6 +507,7 @@ impl Tracker {
 
 /// Returns true if two hypotheses suppose the same events.
 fn is_same(a: &Hypothesis, b: &Hypothesis, merges_starts: bool) -> bool {
+    a.wild == b.wild &&
     (merges_starts || a.start == b.start)
         && a.events.len() == b.events.len()
         && a.events.iter().zip(&b.events).all(|(a, b)| {
