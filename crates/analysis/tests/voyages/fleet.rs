@@ -2,11 +2,15 @@
 //!
 //! The field is the IGRF's, as in the analysis; all else is this folder's own.
 
+use super::habits::HabitState;
+use super::incidents::Incidents;
 use super::kept::Kept;
+use super::patch::Patch;
 pub(crate) use super::plan::{Event, Happened, Name, Plan};
 use super::{Errors, Faults, Passage, Truth, gauss, needle};
 use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::model::Parameters;
 use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
@@ -23,8 +27,11 @@ pub(crate) struct Log {
     /// Minutes of which the samples are means.
     pub(crate) minutes: Vec<Sample>,
     pub(crate) happened: Vec<Happened>,
-    /// The ship at the end.
+    pub(crate) logbook: Vec<LogbookEntry>,
+    /// The ship at the end, without her habits.
     pub(crate) truth: Truth,
+    /// The ship with her habits, once a day.
+    pub(crate) states: Vec<State>,
     /// Magnetism just before the planned step or cargo, and just after.
     pub(crate) changed: Option<[Parameters; 2]>,
     /// First minute, the sizes of the errors, and minutes of the turns that disturb the
@@ -34,35 +41,32 @@ pub(crate) struct Log {
     pub(crate) turns: Vec<i64>,
 }
 
-/// A patch of magnetic sea bed.
-struct Patch {
-    lat: f64,
-    lon: f64,
-    radius_nm: f64,
-    peak_deg: f64,
+/// The ship as her compass feels her at one time, and the field there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct State {
+    pub(crate) time: Timestamp,
+    pub(crate) position: Position,
+    pub(crate) truth: Truth,
 }
 
-impl Patch {
-    /// Makes a patch where the ship will arrive in about an hour.
-    fn ahead(on: &Passage, rng: &mut ChaCha8Rng) -> Patch {
-        let radius_nm = 3.0 + 9.0 * rng.random::<f64>();
-        let ahead_deg = 3.0 * radius_nm / 60.0;
-        let (sin, cos) = on.course.to_radians().sin_cos();
-        let side = if rng.random::<bool>() { 1.0 } else { -1.0 };
-        Patch {
-            lat: on.lat + ahead_deg * cos,
-            lon: on.lon + ahead_deg * sin / on.lat.to_radians().cos(),
-            radius_nm,
-            peak_deg: side * (1.5 + 3.5 * rng.random::<f64>()),
-        }
-    }
-
-    fn at(&self, on: &Passage) -> f64 {
-        let north = on.lat - self.lat;
-        let east = wrap_180(on.lon - self.lon) * on.lat.to_radians().cos();
-        let distance = 60.0 * north.hypot(east) / self.radius_nm;
-        self.peak_deg * (-distance * distance / 2.0).exp()
-    }
+/// Motion of the ship in a minute, and the field about her.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    pub(super) minute: i64,
+    /// True in the first minute in port.
+    pub(super) arrived: bool,
+    pub(super) is_alongside: bool,
+    /// True on a course, not in a turn.
+    pub(super) is_steady: bool,
+    /// Minutes since the last port, and to the end of a stay.
+    pub(super) at_sea_minutes: i64,
+    pub(super) berth_minutes: f64,
+    pub(super) turned_deg: f64,
+    pub(super) course_deg: f64,
+    pub(super) magnetic_deg: f64,
+    pub(super) lat_deg: f64,
+    pub(super) speed_kn: f64,
+    pub(super) h_nt: f64,
 }
 
 /// Situation of the ship in a minute.
@@ -360,6 +364,10 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         state: Stage::ToCome,
     };
     let mut field = FieldAt::from_time(FieldModel::Igrf14, start).unwrap();
+    let mut habits = HabitState::new(seed, &plan.habits);
+    let mut incidents = Incidents::new(seed, plan.incident, plan.event_day, start);
+    truth.alignment_deg += plan.habits.zero_off_deg;
+    let mut states = Vec::new();
     let mut kept = Kept::default();
     let mut turns = Vec::new();
     let mut at_sea_for = 0;
@@ -393,15 +401,43 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         };
         world.plan(plan, minute, now, &mut truth, &mut rng);
         let (variation_error, gyro_off) = world.chance(plan, minute, &passage, &errors, &mut rng);
-        if alongside || passage.turning_minutes > 0.0 {
-            kept.break_off();
-            continue;
-        }
         let position = Position::new(passage.lat, passage.lon).unwrap();
         let here = field.at(position, 0.0).unwrap();
         let (variation, h, z) = (here.declination().degrees_east(), here.h_nt(), here.z_nt);
+        let is_steady = !alongside && passage.turning_minutes <= 0.0;
+        let moment = Moment {
+            minute,
+            arrived,
+            is_alongside: alongside,
+            is_steady,
+            at_sea_minutes: at_sea_for,
+            berth_minutes: passage.berth_minutes,
+            turned_deg: turned,
+            course_deg: passage.course,
+            magnetic_deg: passage.course - variation,
+            lat_deg: passage.lat,
+            speed_kn: passage.speed_kn,
+            h_nt: h,
+        };
+        habits.minute(&moment);
+        incidents.minute(&moment, &mut truth, &mut errors);
+        errors.card_noise = habits.card_noise();
+        let felt = habits.felt(&truth);
+        if minute % 1440 == 0 {
+            let (h_nt, z_nt) = (h, z);
+            states.push(State {
+                time: world.time(minute),
+                position,
+                truth: Truth { h_nt, z_nt, ..felt },
+            });
+        }
+        if !is_steady || incidents.is_silent(&moment) {
+            kept.break_off();
+            continue;
+        }
         let met = (variation + variation_error, h, z);
-        let read = errors.read(&truth, &passage, minute, met, &mut rng);
+        let read = errors.read(&felt, &passage, minute, met, &mut rng);
+        let read = incidents.read(&moment, habits.read(&moment, read));
         let at = Sample {
             time: world.time(minute),
             position,
@@ -419,10 +455,16 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
     let here = field.at(last.position, 0.0).unwrap();
     truth.h_nt = here.h_nt();
     truth.z_nt = here.z_nt;
+    habits.finish(&mut kept.samples);
+    let mut happened = world.happened;
+    happened.append(&mut incidents.happened);
+    happened.sort_by_key(|h| h.from);
     Log {
         samples: kept.samples,
         minutes: kept.minutes,
-        happened: world.happened,
+        happened,
+        logbook: incidents.logbook,
+        states,
         truth,
         changed: world.changed,
         start,
