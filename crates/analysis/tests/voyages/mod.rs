@@ -24,6 +24,8 @@ mod patch;
 #[allow(dead_code, reason = "only what is about changes asks for it")]
 mod plan;
 pub(crate) mod tally;
+#[allow(dead_code, reason = "only what is about changes asks for it")]
+mod world;
 
 use binnacle_analysis::fit::Observation;
 use binnacle_compass::angle::{CompassHeading, Deviation, Variation, wrap_180};

@@ -29,7 +29,7 @@ pub(crate) struct Habits {
     /// Step of bx and of by at each port call, standard deviation in nT; soft iron in
     /// proportion. The steps add up.
     pub(crate) load_step_nt: f64,
-    /// The same, with steps between independent conditions, so that they do not add up.
+    /// Size of such steps between independent conditions, which do not add up.
     pub(crate) load_condition_nt: f64,
     /// Standard deviation of the list, which wanders over days.
     pub(crate) list_deg: f64,
