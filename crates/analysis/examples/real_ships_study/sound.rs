@@ -127,7 +127,9 @@ fn ship(arguments: &Arguments, row: &Row, seed: u64) -> Ship {
     let log = sail_log(seed, &plan);
     let last = log.states.len() - 1;
     let every = arguments.every_days;
-    let mut days: Vec<usize> = (every..last.saturating_sub(every / 2)).step_by(every).collect();
+    let mut days: Vec<usize> = (every..last.saturating_sub(every / 2))
+        .step_by(every)
+        .collect();
     days.push(last);
     let mut ship = Ship::default();
     let mut before = None;
