@@ -201,3 +201,34 @@ fn three_strikes_fall_in_a_day_and_one_in_a_silence() {
     let near = |s: &&Sample| s.time.seconds_since(strike.from).abs() < 2.5 * 3600.0;
     assert_eq!(log.samples.iter().filter(near).count(), 0);
 }
+
+#[test]
+fn roll_and_course_over_ground_are_there_only_where_they_are_measured() {
+    assert!(
+        plain()
+            .samples
+            .iter()
+            .all(|s| s.roll_deg.is_none() && s.cog.is_none())
+    );
+    let log = sail(
+        Habits {
+            list_deg: 3.0,
+            heeling_nt: 5000.0,
+            has_roll_sensor: true,
+            has_course_over_ground: true,
+            ..Habits::default()
+        },
+        Incident::Nothing,
+    );
+    let rolls: Vec<f64> = log.samples.iter().map(|s| s.roll_deg.unwrap()).collect();
+    assert!(
+        (3.0..12.0).contains(&largest(&rolls)),
+        "{}",
+        largest(&rolls)
+    );
+    let drift = |s: &Sample| wrap_180(s.cog.unwrap().degrees() - gyro(s));
+    let drifts: Vec<f64> = log.samples.iter().map(drift).collect();
+    let squares: f64 = drifts.iter().map(|d| d * d).sum();
+    let rms = (squares / drifts.len() as f64).sqrt();
+    assert!((1.5..4.0).contains(&rms), "{rms}");
+}

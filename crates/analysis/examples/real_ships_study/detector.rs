@@ -44,7 +44,9 @@ pub(crate) fn run_until(detector: Detector, log: &Log, until: Timestamp) -> Anal
 /// Returns the usual plan of a seed's ship: three kinds of trade.
 pub(crate) fn plan(seed: u64, event: Event) -> Plan {
     let varieties = [Variety::Rich, Variety::Medium, Variety::Poor];
-    Plan::new(event, varieties[(seed % 3) as usize])
+    let mut plan = Plan::new(event, varieties[(seed % 3) as usize]);
+    plan.habits.has_course_over_ground = true;
+    plan
 }
 
 /// Leaves the ship with a gyro alone. Such a gyro has no faults by chance: nothing could

@@ -107,14 +107,11 @@ fn igrf(lat_deg: f64, lon_deg: f64, time: Timestamp) -> (f64, f64, f64) {
 fn sample(o: &Observation) -> Sample {
     let gyro = ((o.compass + o.deviation) + o.variation).degrees();
     Sample {
-        time: o.time.unwrap(),
-        position: o.position.unwrap(),
-        compass: o.compass,
         gyro: TrueHeading::new(gyro),
-        satellite: None,
         sog_kn: o.sog_kn,
         rate_of_turn_deg_min: Some(0.0),
         spread_deg: Some(0.3),
         windows: o.windows,
+        ..Sample::new(o.time.unwrap(), o.position.unwrap(), o.compass)
     }
 }

@@ -241,15 +241,17 @@ impl Sailing<'_> {
         let read = self.habits.read(moment, read);
         let read = self.incidents.read(moment, read);
         let at = Sample {
-            time: self.world.time(moment.minute),
-            position: met.position,
-            compass: CompassHeading::new(0.0).unwrap(),
-            gyro: None,
-            satellite: None,
             sog_kn: Some(passage.speed_kn),
             rate_of_turn_deg_min: Some(0.0),
             spread_deg: Some(0.4),
             windows: 6,
+            cog: self.habits.course_over_ground(moment),
+            roll_deg: self.habits.measured_roll_deg(),
+            ..Sample::new(
+                self.world.time(moment.minute),
+                met.position,
+                CompassHeading::new(0.0).unwrap(),
+            )
         };
         self.kept
             .take(at, passage.course, read, met.gyro_off_deg, &self.sizes, rng);

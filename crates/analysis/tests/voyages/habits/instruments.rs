@@ -2,7 +2,7 @@
 
 use super::super::fleet::Moment;
 use super::super::gauss;
-use super::Habits;
+use super::{Habits, Wander};
 use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use binnacle_compass::sample::Sample;
 use rand::RngExt;
@@ -11,6 +11,9 @@ use std::f64::consts::TAU;
 
 /// A spell of weather lasts as long as this, and up to twice.
 const SPELL_MINUTES: f64 = 1440.0;
+/// Angle of drift, standard deviation, and the minutes over which it is forgotten.
+const DRIFT_DEG: f64 = 2.5;
+const DRIFT_MINUTES: f64 = 360.0;
 /// Nanotesla in a microtesla.
 const NT_IN_UT: f64 = 1000.0;
 
@@ -26,6 +29,7 @@ pub(super) struct Instruments {
     lag_deg: f64,
     /// Heading on which the error by heading is greatest, radians.
     phase: f64,
+    drift: Wander,
 }
 
 impl Instruments {
@@ -37,10 +41,12 @@ impl Instruments {
             constants: [gauss(rng), gauss(rng)],
             lag_deg: 0.0,
             phase: TAU * rng.random::<f64>(),
+            drift: Wander::new(DRIFT_MINUTES, rng),
         }
     }
 
     pub(super) fn minute(&mut self, sizes: &Habits, now: &Moment, rng: &mut ChaCha8Rng) {
+        self.drift.minute(rng);
         if now.turned_deg != 0.0 {
             self.stuck_at = 2.0 * rng.random::<f64>() - 1.0;
         }
@@ -52,6 +58,11 @@ impl Instruments {
         if sizes.lag_minutes > 0.0 {
             self.lag_deg = (self.lag_deg - now.turned_deg) * (-1.0 / sizes.lag_minutes).exp();
         }
+    }
+
+    /// Returns the angle between heading and course over ground.
+    pub(super) fn drift_deg(&self) -> f64 {
+        DRIFT_DEG * self.drift.value
     }
 
     pub(super) fn card_noise(&self, sizes: &Habits) -> f64 {

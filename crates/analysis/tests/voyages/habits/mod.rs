@@ -10,6 +10,7 @@ mod iron;
 
 use super::fleet::Moment;
 use super::{Truth, gauss};
+use binnacle_compass::angle::CourseOverGround;
 use binnacle_compass::model::Parameters;
 use binnacle_compass::sample::Sample;
 use instruments::Instruments;
@@ -37,6 +38,9 @@ pub(crate) struct Habits {
     pub(crate) heeling_nt: f64,
     /// The samples carry the roll.
     pub(crate) has_roll_sensor: bool,
+    /// The samples carry the course over ground: the heading, and the drift by wind and
+    /// current.
+    pub(crate) has_course_over_ground: bool,
     /// Angle times field at which the card sticks, redrawn at each turn.
     pub(crate) friction_deg_ut: f64,
     /// Standard deviation of the logarithm of the card's noise, by spells of weather.
@@ -110,6 +114,12 @@ impl HabitState {
     pub(super) fn measured_roll_deg(&self) -> Option<f64> {
         let roll_deg = self.iron.list_deg(&self.sizes);
         self.sizes.has_roll_sensor.then_some(roll_deg)
+    }
+
+    /// Returns the course over ground, where it is measured.
+    pub(super) fn course_over_ground(&self, now: &Moment) -> Option<CourseOverGround> {
+        let course = CourseOverGround::new(now.course_deg + self.instruments.drift_deg());
+        course.filter(|_| self.sizes.has_course_over_ground)
     }
 
     /// Adds to whole samples what an agent's means cannot average.
