@@ -93,7 +93,7 @@ fn two_sensors_under_one_talker_write_two_sentences_in_turn() {
 }
 
 #[test]
-fn a_satellite_compass_keeps_its_talker_unless_told() {
+fn a_satellite_compass_is_gp_by_default() {
     let text = sentences(&scenario("", ""), 5, 0.05);
     let text = String::from_utf8_lossy(&text);
     assert!(text.contains("$GPTHS") && text.contains("$HETHS"));
