@@ -96,30 +96,41 @@ pub(crate) fn near(happened: &Happened, change: &Change) -> bool {
         && change.from_earliest <= end.plus_seconds(0.5 * DAY_S)
 }
 
+/// Days over which a report can have been dated anew.
+const REDATED_DAYS: f64 = 10.0;
+
 /// Reports that did not stay as the voyage grew.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Unstable {
     pub(crate) vanished: usize,
     pub(crate) withdrawn: usize,
     pub(crate) renamed: usize,
+    /// Dated anew under the same name, outside the credible time stated before.
+    pub(crate) redated: usize,
 }
 
 impl Unstable {
     /// Counts what became of the reports of an earlier look.
     pub(crate) fn add(&mut self, before: &Analysis, after: &Analysis) {
         for change in before.changes.iter().filter(|c| c.confirmed) {
-            let same = after.changes.iter().filter(|later| {
-                later.from_earliest.seconds_since(change.from_latest) < DAY_S
-                    && change.from_earliest.seconds_since(later.from_latest) < DAY_S
-            });
-            let same: Vec<&Change> = same.collect();
-            if same.iter().any(|c| c.confirmed && c.cause == change.cause) {
+            let within = |days: f64| {
+                let near = after.changes.iter().filter(move |later| {
+                    later.from_earliest.seconds_since(change.from_latest) < days * DAY_S
+                        && change.from_earliest.seconds_since(later.from_latest) < days * DAY_S
+                });
+                near.collect::<Vec<&Change>>()
+            };
+            let is_same = |c: &&Change| c.confirmed && c.cause == change.cause;
+            let (here, near) = (within(1.0), within(REDATED_DAYS));
+            if here.iter().any(is_same) {
                 continue;
             }
-            if same.iter().any(|c| c.withdrawn) {
+            if here.iter().any(|c| c.withdrawn) {
                 self.withdrawn += 1;
-            } else if same.iter().any(|c| c.confirmed) {
+            } else if here.iter().any(|c| c.confirmed) {
                 self.renamed += 1;
+            } else if near.iter().any(is_same) {
+                self.redated += 1;
             } else {
                 self.vanished += 1;
             }

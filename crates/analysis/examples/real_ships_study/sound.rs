@@ -36,10 +36,10 @@ pub(crate) const ROWS: [Row; 23] = [
     row("retention_0.5", 0.3, |p| p.habits.retentive_share = 0.005),
     row("retention_1", 0.3, |p| p.habits.retentive_share = 0.01),
     row("retention_2", 1.0, |p| p.habits.retentive_share = 0.02),
-    row("ballast_0.1", 0.3, |p| p.habits.load_condition_nt = 100.0),
-    row("ballast_0.3", 1.0, |p| p.habits.load_condition_nt = 300.0),
-    row("ballast_0.1_sum", 0.3, |p| p.habits.load_step_nt = 100.0),
-    row("ballast_0.3_sum", 1.0, |p| p.habits.load_step_nt = 300.0),
+    row("ballast_0.1", 0.3, |p| p.habits.load_step_nt = 100.0),
+    row("ballast_0.3", 1.0, |p| p.habits.load_step_nt = 300.0),
+    row("load_0.1", 0.3, |p| p.habits.load_condition_nt = 100.0),
+    row("load_0.3", 1.0, |p| p.habits.load_condition_nt = 300.0),
     row("list_1.5", 0.3, |p| list(p, 1.5)),
     row("list_3", 1.0, |p| list(p, 3.0)),
     row("list_3_roll", 1.0, |p| {
@@ -96,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) {
         return;
     }
     println!(
-        "\n{:16} {:>5} {:>6} {:>11} {:>11} {:>11} {:>6} {:>6} {:>7} {:>8} {:>9} {:>7} {:>6}",
+        "\n{:16} {:>5} {:>6} {:>11} {:>11} {:>11} {:>6} {:>6} {:>7} {:>8} {:>9} {:>7} {:>7} {:>6}",
         "sound ship",
         "ships",
         "years",
@@ -109,6 +109,7 @@ pub(crate) fn run(arguments: &Arguments) {
         "vanished",
         "withdrawn",
         "renamed",
+        "redated",
         "s/yr"
     );
     for row in rows {
@@ -170,7 +171,7 @@ fn print(row: &Row, ships: &[Ship]) {
     let a_year = |count: fn(&Ship) -> usize, target| at_most(sum(count) as f64 / years, target, 2);
     let seconds: Vec<f64> = ships.iter().map(|ship| ship.seconds).collect();
     println!(
-        "{:16} {:5} {years:6.1} {:>11} {:>11} {:>11} {:>6} {:>6} {:7.1} {:8} {:9} {:7} {:6.2}",
+        "{:16} {:5} {years:6.1} {:>11} {:>11} {:>11} {:>6} {:>6} {:7.1} {:8} {:9} {:7} {:7} {:6.2}",
         row.name,
         ships.len(),
         a_year(|s| s.reports.ship, row.target),
@@ -182,6 +183,7 @@ fn print(row: &Row, ships: &[Ship]) {
         sum(|s| s.unstable.vanished),
         sum(|s| s.unstable.withdrawn),
         sum(|s| s.unstable.renamed),
+        sum(|s| s.unstable.redated),
         quantile(&seconds, 0.5),
     );
 }
