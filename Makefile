@@ -6,7 +6,7 @@ CARGO ?= cargo
 # What has tests, and the programs that tests drive: benchmarks and studies are no part of it.
 TESTED := --lib --bins --tests --example changes_baselines
 
-.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak bench bench-link bench-formats bench-peer bench-changes bench-web study study-adjust study-changes study-losses methods clean
+.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak bench bench-link bench-formats bench-peer bench-changes bench-web study study-adjust study-changes study-ships study-losses methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -80,6 +80,9 @@ study-adjust: setup ## Measure plans of adjustments on simulated ships and binna
 
 study-changes: setup ## Measure how changes are found on simulated fleets: delay, false alarms
 	$(CARGO) run --locked --release -p binnacle-analysis --example changes_study
+
+study-ships: setup ## Measure a detector on ships with habits and faults of every kind
+	$(CARGO) run --locked --release -p binnacle-analysis --example real_ships_study -- old
 
 study-losses: setup ## Measure what rounding and thinning cost the estimator
 	$(CARGO) run --locked --release -p binnacle-wire --example losses

@@ -92,16 +92,16 @@ fn build_sample(windows: &[Window]) -> Option<Sample> {
         let difference = mean_difference(&kept, of)?;
         TrueHeading::new(compass_deg - difference)
     };
+    let time = Timestamp::from_micros(middle_s * 1_000_000).ok()?;
+    let position = nearest_window(&kept, middle_s / WINDOW_S)?.position;
     Some(Sample {
-        time: Timestamp::from_micros(middle_s * 1_000_000).ok()?,
-        position: nearest_window(&kept, middle_s / WINDOW_S)?.position,
-        compass: CompassHeading::new(compass_deg)?,
         gyro: reference(|w| w.gyro_deg),
         satellite: reference(|w| w.satellite_deg),
         sog_kn: mean(kept.iter().map(|w| w.sog_kn)),
         rate_of_turn_deg_min: mean(kept.iter().filter_map(|w| w.rate_of_turn_deg_min)),
         spread_deg: spread(&kept),
         windows: kept.len() as u16,
+        ..Sample::new(time, position, CompassHeading::new(compass_deg)?)
     })
 }
 

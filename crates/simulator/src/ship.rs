@@ -238,7 +238,7 @@ impl Ship {
             rate_deg_min: motion.rate_deg_min,
             roll_deg: motion.roll_deg,
             compass_deg,
-            gyro_deg: self.gyro.read(motion.heading_deg),
+            gyro_deg: self.gyro.read(dt, motion.heading_deg),
             satellite: match satellite {
                 None => SatelliteReading::Absent,
                 Some(None) => SatelliteReading::Lost,

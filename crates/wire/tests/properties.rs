@@ -37,15 +37,17 @@ fn samples() -> impl Strategy<Value = Vec<Sample>> {
         1..=u16::MAX,
     );
     let sample = sample.prop_map(|(place, headings, rest, windows)| Sample {
-        time: Timestamp::from_micros(place.0).unwrap(),
-        position: Position::new(place.1, place.2).unwrap(),
-        compass: CompassHeading::new(headings.0).unwrap(),
         gyro: headings.1.and_then(TrueHeading::new),
         satellite: headings.2.and_then(TrueHeading::new),
         sog_kn: rest.0,
         rate_of_turn_deg_min: rest.1,
         spread_deg: rest.2,
         windows,
+        ..Sample::new(
+            Timestamp::from_micros(place.0).unwrap(),
+            Position::new(place.1, place.2).unwrap(),
+            CompassHeading::new(headings.0).unwrap(),
+        )
     });
     prop::collection::vec(sample, 0..300)
 }

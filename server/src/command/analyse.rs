@@ -66,17 +66,17 @@ fn sample(row: &CsvRow) -> Result<Sample, (&'static str, String)> {
         Some(found) => ("satellite_deg", Some(found)),
         None => ("reference_deg", row.reference_deg),
     };
+    let time = row.time.ok_or_else(empty("time"))?;
+    let position = Position::new(lat, lon).map_err(|error| ("lon", error.to_string()))?;
+    let compass = CompassHeading::try_from(compass_deg)
+        .map_err(|error| ("compass_deg", error.to_string()))?;
     Ok(Sample {
-        time: row.time.ok_or_else(empty("time"))?,
-        position: Position::new(lat, lon).map_err(|error| ("lon", error.to_string()))?,
-        compass: CompassHeading::try_from(compass_deg)
-            .map_err(|error| ("compass_deg", error.to_string()))?,
         gyro: heading("gyro_deg", row.gyro_deg)?,
         satellite: heading(satellite, satellite_deg)?,
         sog_kn: row.sog_kn,
-        rate_of_turn_deg_min: None,
         spread_deg: row.spread_deg,
         windows: row.windows.unwrap_or(60.0).clamp(1.0, 65_535.0) as u16,
+        ..Sample::new(time, position, compass)
     })
 }
 

@@ -38,16 +38,14 @@ fn sample(minutes: i64, lat: f64, magnetic_deg: f64) -> Sample {
     let earth = field(FieldModel::Igrf14, position, 0.0, time(minutes)).unwrap();
     let needle = SHIP.linearised_at_magnetic(magnetic_deg.to_radians(), earth.for_ship());
     let compass = magnetic_deg - needle.deviation_rad.to_degrees();
+    let compass = CompassHeading::new(compass).unwrap();
     Sample {
-        time: time(minutes),
-        position,
-        compass: CompassHeading::new(compass).unwrap(),
         gyro: TrueHeading::new(magnetic_deg + earth.declination().degrees_east()),
-        satellite: None,
         sog_kn: Some(14.0),
         rate_of_turn_deg_min: Some(0.0),
         spread_deg: Some(0.3),
         windows: 60,
+        ..Sample::new(time(minutes), position, compass)
     }
 }
 

@@ -17,6 +17,8 @@ pub(crate) struct Errors {
     pub(crate) storm_minutes: f64,
     speed_error: f64,
     multipath: f64,
+    /// Factor on the compass card's noise.
+    pub(crate) card_noise: f64,
 }
 
 impl Errors {
@@ -31,6 +33,7 @@ impl Errors {
             storm_minutes: 0.0,
             speed_error: faults.speed_error * gauss(rng),
             multipath: 0.0,
+            card_noise: 1.0,
         }
     }
 
@@ -88,8 +91,8 @@ impl Errors {
         let daily = 0.12 * (TAU * (minute as f64 / 1440.0 + on.lon / 360.0)).sin();
         let magnetic = true_heading - variation - (self.crust + daily + self.storm) * 24_000.0 / h;
         let compass = needle(&truth.parameters, magnetic, h, z) - truth.alignment_deg
-            + self.compass_swing
-            + 0.35 * gauss(rng);
+            + self.card_noise * self.compass_swing
+            + self.card_noise * 0.35 * gauss(rng);
         let cos_lat = on.lat.to_radians().cos();
         let northerly = on.speed_kn * on.course.to_radians().cos() / (902.5 * cos_lat);
         let gyro = true_heading

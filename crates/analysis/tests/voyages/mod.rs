@@ -11,13 +11,21 @@ pub(crate) mod bound;
 mod errors;
 #[allow(dead_code, reason = "only what is about changes asks for it")]
 pub(crate) mod fleet;
+#[allow(dead_code, reason = "only the study of real ships asks for them all")]
+pub(crate) mod habits;
+#[allow(dead_code, reason = "only the study of real ships asks for them all")]
+pub(crate) mod incidents;
 mod kept;
 #[allow(dead_code, reason = "only the comparison of detectors asks for it")]
 pub(crate) mod lorden;
 mod passage;
 #[allow(dead_code, reason = "only what is about changes asks for it")]
+mod patch;
+#[allow(dead_code, reason = "only what is about changes asks for it")]
 mod plan;
 pub(crate) mod tally;
+#[allow(dead_code, reason = "only what is about changes asks for it")]
+mod world;
 
 use binnacle_analysis::fit::Observation;
 use binnacle_compass::angle::{CompassHeading, Deviation, Variation, wrap_180};

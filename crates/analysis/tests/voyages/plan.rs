@@ -1,5 +1,7 @@
 //! Plans of voyages, and the events on them.
 
+use super::habits::Habits;
+use super::incidents::Incident;
 use super::{Faults, Variety};
 use binnacle_compass::time::Timestamp;
 
@@ -43,6 +45,9 @@ pub(crate) struct Plan {
     /// The sun's seed, if ships of one seed are to meet the same storms.
     pub(crate) sun: Option<u64>,
     pub(crate) faults: Faults,
+    pub(crate) habits: Habits,
+    /// In the week after the event's day, too.
+    pub(crate) incident: Incident,
 }
 
 impl Plan {
@@ -59,6 +64,8 @@ impl Plan {
                 satellite: true,
                 ..Faults::USUAL
             },
+            habits: Habits::default(),
+            incident: Incident::Nothing,
         }
     }
 }
@@ -82,4 +89,9 @@ pub(crate) enum Name {
     Ramp,
     Storm,
     Anomaly,
+    ZeroMoved,
+    Jam,
+    Settling,
+    GyroRamp,
+    DryDock,
 }

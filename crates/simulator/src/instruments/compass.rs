@@ -5,6 +5,7 @@
 //! 0.2° over twenty minutes, friction of (3/H)° with H in µT (ISO 25862), and
 //! the Gaussian error that a turn leaves for two to three minutes.
 
+use crate::instruments::display::Display;
 use crate::poisson::{Field, Magnetism};
 use crate::random::Random;
 use crate::random::process::Wander;
@@ -35,6 +36,7 @@ pub(crate) struct Compass {
     wander: Wander,
     /// Offset at which friction holds the card, degrees from its free position.
     held_deg: f64,
+    display: Display,
     random: Random,
 }
 
@@ -61,6 +63,7 @@ impl Compass {
             swing: Wander::new(SWING_DEG, SWING_S, &mut random),
             wander: Wander::new(WANDER_DEG, WANDER_S, &mut random),
             held_deg: 0.0,
+            display: Display::new(plan.compass),
             random,
         }
     }
@@ -84,6 +87,7 @@ impl Compass {
         let free = swing + wander - self.gaussian_deg;
         let friction = FRICTION_DEG_UT / (on.field.h_nt / 1000.0);
         self.held_deg = self.held_deg.clamp(free - friction, free + friction);
-        on.magnetic_deg - deviation + self.alignment_deg + self.held_deg
+        let card_deg = on.magnetic_deg - deviation + self.alignment_deg + self.held_deg;
+        self.display.show(dt, card_deg)
     }
 }

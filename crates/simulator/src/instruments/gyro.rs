@@ -6,6 +6,7 @@
 //! settled; and the scenario's faults. Swing and bias grow with
 //! 1/cos(latitude).
 
+use crate::instruments::display::Display;
 use crate::navigation::motion::{Motion, Turned};
 use crate::random::Random;
 use crate::random::process::{Swing, Wander};
@@ -29,6 +30,7 @@ pub(crate) struct Gyro {
     settling_deg: f64,
     faults: Vec<Event>,
     error_deg: f64,
+    display: Display,
     random: Random,
 }
 
@@ -51,6 +53,7 @@ impl Gyro {
                 .cloned()
                 .collect(),
             error_deg: 0.0,
+            display: Display::new(plan.gyro.display),
             random,
         }
     }
@@ -77,9 +80,10 @@ impl Gyro {
             + self.fault_deg(day);
     }
 
-    /// Returns the gyro reading, degrees, not wrapped.
-    pub(crate) fn read(&mut self, heading_deg: f64) -> f64 {
-        heading_deg + self.error_deg + NOISE_DEG * self.random.gaussian()
+    /// Returns the gyro reading after `dt` seconds, degrees, not wrapped.
+    pub(crate) fn read(&mut self, dt: f64, heading_deg: f64) -> f64 {
+        let sensor_deg = heading_deg + self.error_deg + NOISE_DEG * self.random.gaussian();
+        self.display.show(dt, sensor_deg)
     }
 
     fn fault_deg(&self, day: f64) -> f64 {

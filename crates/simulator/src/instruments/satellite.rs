@@ -1,6 +1,7 @@
 //! A satellite compass: independent of magnetism and speed, with 0.5° of noise,
 //! and without a heading while it has lost its satellites.
 
+use crate::instruments::display::Display;
 use crate::random::Random;
 use crate::random::process::Wander;
 use crate::scenario::{SatellitePlan, ShipPlan};
@@ -18,6 +19,7 @@ pub(crate) struct Satellite {
     reflection: Wander,
     until_dropout_s: f64,
     dropout_s: f64,
+    display: Display,
     random: Random,
 }
 
@@ -30,6 +32,7 @@ impl Satellite {
             reflection: Wander::new(REFLECTION_DEG, REFLECTION_S, &mut random),
             until_dropout_s: until_dropout_s(satellite, &mut random),
             dropout_s: 0.0,
+            display: Display::new(satellite.display),
             random,
         }
     }
@@ -45,7 +48,9 @@ impl Satellite {
         }
         self.dropout_s -= dt;
         let sees = self.dropout_s <= 0.0;
-        sees.then_some(heading_deg + self.plan.alignment_deg + noise + reflection)
+        let sensor_deg = heading_deg + self.plan.alignment_deg + noise + reflection;
+        let shown_deg = self.display.show(dt, sensor_deg);
+        sees.then_some(shown_deg)
     }
 }
 

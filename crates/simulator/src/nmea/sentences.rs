@@ -17,8 +17,10 @@ pub(crate) fn hchdg(out: &mut Vec<u8>, compass_deg: f64) {
     });
 }
 
-/// `$HETHS` or `$GPTHS`: a heading in mode A, or mode V without one.
-pub(crate) fn ths(out: &mut Vec<u8>, head: [u8; 7], heading_deg: Option<f64>) {
+/// `$HETHS` or `$GPTHS`: a heading of this talker in mode A, or mode V without one.
+pub(crate) fn ths(out: &mut Vec<u8>, talker: [u8; 2], heading_deg: Option<f64>) {
+    let [first, second] = talker;
+    let head = [b'$', first, second, b'T', b'H', b'S', b','];
     sentence(out, &head, |out| {
         if let Some(degrees) = heading_deg {
             heading(out, degrees);
@@ -169,7 +171,7 @@ mod tests {
 
     #[test]
     fn a_lost_satellite_compass_gives_no_heading() {
-        let lost = written(|out| ths(out, *b"$GPTHS,", None));
+        let lost = written(|out| ths(out, *b"GP", None));
         assert_eq!(lost, "$GPTHS,,V*0E\r\n");
     }
 

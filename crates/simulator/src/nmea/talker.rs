@@ -7,6 +7,8 @@ use crate::scenario::{LineFaults, Scenario, Timing};
 use crate::ship::{Reading, SatelliteReading, Ship};
 use binnacle_compass::time::Timestamp;
 
+/// Talker of the gyro's sentences.
+const GYRO: [u8; 2] = *b"HE";
 const ROLL_EVERY_S: f64 = 10.0;
 const DATE_EVERY_S: f64 = 600.0;
 
@@ -93,17 +95,9 @@ impl Talker {
         }
         self.write_sentence(out, |out| sentences::hchdg(out, reading.compass_deg));
         self.write_sentence(out, |out| {
-            sentences::ths(out, *b"$HETHS,", Some(reading.gyro_deg));
+            sentences::ths(out, GYRO, Some(reading.gyro_deg));
         });
-        match reading.satellite {
-            SatelliteReading::Absent => {}
-            SatelliteReading::Lost => {
-                self.write_sentence(out, |out| sentences::ths(out, *b"$GPTHS,", None));
-            }
-            SatelliteReading::Heading(degrees) => {
-                self.write_sentence(out, |out| sentences::ths(out, *b"$GPTHS,", Some(degrees)));
-            }
-        }
+        self.write_satellite(out, reading.satellite);
         if due(self.since_roll_s, ROLL_EVERY_S) {
             self.since_roll_s = 0.0;
             self.write_sentence(out, |out| sentences::iixdr_roll(out, reading.roll_deg));
@@ -113,6 +107,18 @@ impl Talker {
             self.write_sentence(out, |out| sentences::gpzda(out, reading.time));
         }
         reading
+    }
+
+    fn write_satellite(&mut self, out: &mut Vec<u8>, reading: SatelliteReading) {
+        let Some(plan) = self.ship.plan().satellite else {
+            return;
+        };
+        let heading = match reading {
+            SatelliteReading::Absent => return,
+            SatelliteReading::Lost => None,
+            SatelliteReading::Heading(degrees) => Some(degrees),
+        };
+        self.write_sentence(out, |out| sentences::ths(out, plan.talker, heading));
     }
 
     fn interval_s(&self) -> f64 {

@@ -104,6 +104,8 @@ pub struct ShipPlan {
     pub magnetism: Magnetism,
     /// Lubber-line error, added to every compass reading, degrees.
     pub alignment_deg: f64,
+    /// Display of the magnetic compass.
+    pub compass: DisplayPlan,
     /// Gaussian error after a sustained turn of 0.3° a second, degrees.
     pub gaussian_error_deg: f64,
     /// The gyro.
@@ -142,6 +144,8 @@ pub struct GyroPlan {
     /// Fraction of the speed error that remains: 0 perfectly corrected, 1 not
     /// at all.
     pub speed_error_left: f64,
+    /// Its display.
+    pub display: DisplayPlan,
 }
 
 /// A satellite compass's errors.
@@ -151,6 +155,20 @@ pub struct SatellitePlan {
     pub alignment_deg: f64,
     /// Losses of the satellites per day.
     pub dropouts_per_day: f64,
+    /// Talker of its sentences, two letters. With the gyro's, `HE`, two sensors share one
+    /// talker.
+    pub talker: [u8; 2],
+    /// Its display.
+    pub display: DisplayPlan,
+}
+
+/// Display of an instrument's heading.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DisplayPlan {
+    /// Time constant with which it follows the sensor, seconds.
+    pub lag_s: f64,
+    /// Steps of the reading, degrees, such as 1; 0 for all digits of the sentence.
+    pub resolution_deg: f64,
 }
 
 /// An event of a ship. Days count from the start.

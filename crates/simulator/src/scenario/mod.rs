@@ -13,8 +13,8 @@ mod ship;
 mod values;
 
 pub use definition::{
-    Anomaly, Event, GyroPlan, LineFaults, RoutePoint, SatellitePlan, Scenario, ShipPlan, Storm,
-    Timing,
+    Anomaly, DisplayPlan, Event, GyroPlan, LineFaults, RoutePoint, SatellitePlan, Scenario,
+    ShipPlan, Storm, Timing,
 };
 pub use error::ScenarioError;
 

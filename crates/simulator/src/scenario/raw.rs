@@ -73,6 +73,7 @@ pub(super) struct RawShip {
     pub(super) list_deg: Option<Number>,
     pub(super) traffic_per_day: Option<Number>,
     pub(super) alignment_deg: Option<Number>,
+    pub(super) compass: Option<RawCompass>,
     pub(super) gaussian_error_deg: Option<Number>,
     pub(super) magnetism: Spanned<RawMagnetism>,
     pub(super) gyro: Option<RawGyro>,
@@ -90,11 +91,20 @@ pub(super) struct RawMagnetism {
 
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub(super) struct RawCompass {
+    pub(super) lag_s: Option<Number>,
+    pub(super) resolution_deg: Option<Number>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct RawGyro {
     pub(super) constant_deg: Option<Number>,
     pub(super) schuler_deg: Option<Number>,
     pub(super) slow_deg: Option<Number>,
     pub(super) speed_error_left: Option<Number>,
+    pub(super) lag_s: Option<Number>,
+    pub(super) resolution_deg: Option<Number>,
 }
 
 #[derive(Deserialize)]
@@ -102,6 +112,9 @@ pub(super) struct RawGyro {
 pub(super) struct RawSatellite {
     pub(super) alignment_deg: Option<Number>,
     pub(super) dropouts_per_day: Option<Number>,
+    pub(super) talker: Option<Spanned<String>>,
+    pub(super) lag_s: Option<Number>,
+    pub(super) resolution_deg: Option<Number>,
 }
 
 /// One struct for all kinds: a tagged enum would lose the positions of its

@@ -2,21 +2,25 @@
 
 use super::error::Source;
 use super::event::event;
-use super::raw::{RawGyro, RawSatellite, RawShip};
+use super::raw::{Number, RawCompass, RawGyro, RawSatellite, RawShip};
 use super::values::{Checked, PERMANENT_NT};
-use super::{Event, GyroPlan, RoutePoint, SatellitePlan, ShipPlan};
+use super::{DisplayPlan, Event, GyroPlan, RoutePoint, SatellitePlan, ShipPlan};
 use crate::earth::Chart;
 use crate::poisson::{Field, Magnetism};
 use binnacle_compass::time::Timestamp;
 use std::collections::BTreeMap;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
+use toml::Spanned;
 
 pub(super) type Routes = BTreeMap<String, Arc<[RoutePoint]>>;
 
 /// The least directive force, as a fraction of the earth's, with which a
 /// compass can still be used.
 const MIN_DIRECTIVE_FORCE: f64 = 0.2;
+
+/// Limits of the angle between an instrument and the ship's axis.
+const ALIGNMENTS_DEG: RangeInclusive<f64> = -30.0..=30.0;
 
 pub(super) fn ship(
     source: &Source<'_>,
@@ -62,8 +66,9 @@ pub(super) fn ship(
             "alignment_deg",
             raw.alignment_deg.as_ref(),
             0.0,
-            -10.0..=10.0,
+            ALIGNMENTS_DEG,
         )?,
+        compass: compass(source, raw.compass.as_ref())?,
         gaussian_error_deg: source.or("gaussian_error_deg", gaussian, 1.5, -10.0..=10.0)?,
         gyro: gyro(source, raw.gyro.as_ref())?,
         satellite: raw
@@ -106,15 +111,55 @@ fn gyro(source: &Source<'_>, raw: Option<&RawGyro>) -> Checked<GyroPlan> {
         schuler_deg: source.or("schuler_deg", raw.schuler_deg.as_ref(), 0.35, 0.0..=5.0)?,
         slow_deg: source.or("slow_deg", raw.slow_deg.as_ref(), 0.3, 0.0..=5.0)?,
         speed_error_left: source.or("speed_error_left", left, 0.1, -1.0..=1.0)?,
+        display: display(source, raw.lag_s.as_ref(), raw.resolution_deg.as_ref())?,
     })
 }
 
 fn satellite(source: &Source<'_>, raw: &RawSatellite) -> Checked<SatellitePlan> {
     let dropouts = raw.dropouts_per_day.as_ref();
     Ok(SatellitePlan {
-        alignment_deg: source.or("alignment_deg", raw.alignment_deg.as_ref(), 0.0, -5.0..=5.0)?,
+        alignment_deg: source.or(
+            "alignment_deg",
+            raw.alignment_deg.as_ref(),
+            0.0,
+            ALIGNMENTS_DEG,
+        )?,
         dropouts_per_day: source.or("dropouts_per_day", dropouts, 4.0, 0.0..=500.0)?,
+        talker: talker(source, raw.talker.as_ref())?,
+        display: display(source, raw.lag_s.as_ref(), raw.resolution_deg.as_ref())?,
     })
+}
+
+fn compass(source: &Source<'_>, raw: Option<&RawCompass>) -> Checked<DisplayPlan> {
+    let none = RawCompass::default();
+    let raw = raw.unwrap_or(&none);
+    display(source, raw.lag_s.as_ref(), raw.resolution_deg.as_ref())
+}
+
+fn display(
+    source: &Source<'_>,
+    lag_s: Option<&Number>,
+    resolution_deg: Option<&Number>,
+) -> Checked<DisplayPlan> {
+    Ok(DisplayPlan {
+        lag_s: source.or("lag_s", lag_s, 0.0, 0.0..=300.0)?,
+        resolution_deg: source.or("resolution_deg", resolution_deg, 0.0, 0.0..=5.0)?,
+    })
+}
+
+fn talker(source: &Source<'_>, raw: Option<&Spanned<String>>) -> Checked<[u8; 2]> {
+    let Some(raw) = raw else {
+        return Ok(*b"GP");
+    };
+    match raw.get_ref().as_bytes() {
+        &[first, second] if first.is_ascii_uppercase() && second.is_ascii_uppercase() => {
+            Ok([first, second])
+        }
+        _ => {
+            let problem = format!("{:?} is not two capital letters", raw.get_ref());
+            Err(source.error(raw.span(), "talker", problem))
+        }
+    }
 }
 
 fn events(

@@ -115,3 +115,16 @@ fn noise_is_no_scenario() {
         assert_eq!(error.lines().count(), 1, "{error}");
     }
 }
+
+#[test]
+fn the_settings_of_instruments_are_checked() {
+    let with = |settings: &str| {
+        let satellite = "satellite = { alignment_deg = 0.2, dropouts_per_day = 4 }";
+        error(satellite, settings)
+    };
+    assert!(with("satellite = { talker = \"H\" }").contains("talker: \"H\" is not two capital"));
+    assert!(with("satellite = { alignment_deg = 31 }").contains("alignment_deg: 31 is not"));
+    assert!(with("compass = { lag_s = -1 }").contains("lag_s: -1 is not within 0 to 300"));
+    assert!(with("compass = { resolution_deg = 9 }").contains("resolution_deg: 9 is not"));
+    assert!(error("alignment_deg = 0.3", "alignment_deg = 31").contains("not within -30 to 30"));
+}

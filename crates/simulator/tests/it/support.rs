@@ -7,7 +7,22 @@ use binnacle_simulator::ship::{Reading, Ship};
 /// A scenario of a day and a half from port to port along 45° N with a usual
 /// ship; `more` is added to the ship, `around` before everything.
 pub(crate) fn scenario(around: &str, more: &str) -> Scenario {
-    let text = format!(
+    parse(&text(around, more))
+}
+
+/// The scenario with the first occurrence of something replaced.
+pub(crate) fn changed(old: &str, new: &str) -> Scenario {
+    let text = text("", "");
+    assert!(text.contains(old), "{old}");
+    parse(&text.replacen(old, new, 1))
+}
+
+fn parse(text: &str) -> Scenario {
+    Scenario::parse("test.toml", text).expect("the test's scenario is right")
+}
+
+fn text(around: &str, more: &str) -> String {
+    format!(
         r#"
 name = "test"
 interval_s = 2
@@ -28,8 +43,7 @@ magnetism.chi = [[-0.045, 0.0012, -0.0215], [0.0016, -0.080, 0.0022], [0.004, -0
 satellite = {{}}
 {more}
 "#
-    );
-    Scenario::parse("test.toml", &text).expect("the test's scenario is right")
+    )
 }
 
 /// The first ship of a scenario at its start.

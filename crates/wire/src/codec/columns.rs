@@ -265,18 +265,18 @@ fn to_sample(row: &Row<'_>) -> Result<Sample, DecodeError> {
     let reference = gyro.or(satellite).unwrap_or(Decimal::ZERO);
     let compass = row.required(COMPASS)?.plus(reference).wrapped_360();
     let windows = row.within(WINDOWS, row.required(WINDOWS)?, &WINDOWS_RANGE)?;
+    let time = i64::try_from(time.micros())
+        .ok()
+        .and_then(|micros| Timestamp::from_micros(micros).ok())
+        .ok_or(row.out_of_range(TIME))?;
+    let compass = CompassHeading::new(compass.value()).ok_or(row.out_of_range(COMPASS))?;
     Ok(Sample {
-        time: i64::try_from(time.micros())
-            .ok()
-            .and_then(|micros| Timestamp::from_micros(micros).ok())
-            .ok_or(row.out_of_range(TIME))?,
-        position,
-        compass: CompassHeading::new(compass.value()).ok_or(row.out_of_range(COMPASS))?,
         gyro: gyro.and_then(|g| TrueHeading::new(g.value())),
         satellite: satellite.and_then(|s| TrueHeading::new(s.value())),
         sog_kn: row.optional_within(SOG, &SOG_RANGE_KN)?,
         rate_of_turn_deg_min: row.optional_within(RATE_OF_TURN, &RATE_OF_TURN_RANGE)?,
         spread_deg: row.optional_within(SPREAD, &SPREAD_RANGE_DEG)?,
         windows: windows as u16,
+        ..Sample::new(time, position, compass)
     })
 }

@@ -10,16 +10,16 @@ use std::collections::BTreeMap;
 use uuid::Uuid;
 
 fn sample(time: &str, compass: f64, gyro: Option<f64>, satellite: Option<f64>) -> Sample {
+    let time = Timestamp::parse(time).unwrap();
+    let position = Position::new(43.35, -3.03).unwrap();
     Sample {
-        time: Timestamp::parse(time).unwrap(),
-        position: Position::new(43.35, -3.03).unwrap(),
-        compass: CompassHeading::new(compass).unwrap(),
         gyro: gyro.and_then(TrueHeading::new),
         satellite: satellite.and_then(TrueHeading::new),
         sog_kn: Some(12.4),
         rate_of_turn_deg_min: Some(-0.5),
         spread_deg: Some(0.3),
         windows: 60,
+        ..Sample::new(time, position, CompassHeading::new(compass).unwrap())
     }
 }
 

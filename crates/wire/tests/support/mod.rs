@@ -72,17 +72,16 @@ pub(crate) fn voyage(seed: u64, count: usize) -> Vec<Sample> {
         let swing = 0.4 * (time.micros() as f64 / 5.064e9 * std::f64::consts::TAU).sin();
         let ship = heading + 0.2 * dice.normal();
         let deviation = 2.5 * sin - 1.5 * cos + 0.3;
+        let compass = CompassHeading::new(ship + 4.0 - deviation + 0.15 * dice.normal());
+        let middle = time.plus_seconds(5.0 * (f64::from(windows) / 2.0).floor() - 150.0);
+        let position = Position::new(lat, (lon + 540.0).rem_euclid(360.0) - 180.0);
         samples.push(Sample {
-            time: time.plus_seconds(5.0 * (f64::from(windows) / 2.0).floor() - 150.0),
-            position: Position::new(lat, (lon + 540.0).rem_euclid(360.0) - 180.0).expect("at sea"),
-            compass: CompassHeading::new(ship + 4.0 - deviation + 0.15 * dice.normal())
-                .expect("finite"),
             gyro: TrueHeading::new(ship + swing + 0.05 * dice.normal()),
-            satellite: None,
             sog_kn: Some(sog_kn.abs()),
             rate_of_turn_deg_min: Some(0.3 * dice.normal()),
             spread_deg: Some((0.35 + 0.1 * dice.normal()).abs()),
             windows,
+            ..Sample::new(middle, position.expect("at sea"), compass.expect("finite"))
         });
     }
     samples
