@@ -13,7 +13,8 @@ use binnacle_compass::time::Timestamp;
 pub(crate) type Detector = fn(&[Sample], &[LogbookEntry], &AnalysisSettings) -> Analysis;
 
 /// Detectors and their names on the command line.
-pub(crate) const DETECTORS: [(&str, Detector); 1] = [("old", analyse)];
+pub(crate) const DETECTORS: [(&str, Detector); 2] =
+    [("old", analyse), ("new", binnacle_analysis::tracking::analyse)];
 
 /// Returns the detector of a name.
 pub(crate) fn find(name: &str) -> Result<Detector, String> {

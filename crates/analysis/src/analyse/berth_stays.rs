@@ -30,7 +30,7 @@ const REPORTED_SD: f64 = 3.0;
 const USUAL_H_NT: f64 = 24_000.0;
 
 /// Marks the samples taken alongside, and returns each stay.
-pub(super) fn mark_alongside(readings: &mut [Reading]) -> Vec<Range<usize>> {
+pub(crate) fn mark_alongside(readings: &mut [Reading]) -> Vec<Range<usize>> {
     let mut stays = Vec::new();
     let mut from = 0;
     while from < readings.len() {
@@ -85,7 +85,7 @@ fn turned_deg(a: &Reading, b: &Reading) -> Option<f64> {
 }
 
 /// Adds the changes by berths that the stays show against the vessel before and after.
-pub(super) fn add_berth_changes(
+pub(crate) fn add_berth_changes(
     stays: &[Range<usize>],
     readings: &[Reading],
     epochs: &[Epoch],

@@ -5,14 +5,14 @@
 //! nothing, to the last bit. No sample is left out without a reason. Samples that do not
 //! carry a model yield a refusal that names what is missing.
 
-mod berth_stays;
+pub(crate) mod berth_stays;
 mod cargo_entries;
 mod changes;
 mod epoch;
 mod epoch_builder;
 mod logbook_rules;
 mod mixture;
-mod reading;
+pub(crate) mod reading;
 mod single_heading;
 mod stuck_compass;
 

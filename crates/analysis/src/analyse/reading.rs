@@ -17,21 +17,21 @@ const DAY_MICROS: i64 = 86_400_000_000;
 
 /// A sample with what the analysis derives from it.
 #[derive(Clone)]
-pub(super) struct Reading {
+pub(crate) struct Reading {
     /// Gyro heading, corrected for speed error.
-    pub(super) gyro: Option<TrueHeading>,
-    pub(super) variation: Option<Variation>,
-    pub(super) earth: Option<EarthField>,
-    pub(super) diagnostic: SampleDiagnostic,
+    pub(crate) gyro: Option<TrueHeading>,
+    pub(crate) variation: Option<Variation>,
+    pub(crate) earth: Option<EarthField>,
+    pub(crate) diagnostic: SampleDiagnostic,
 }
 
 impl Reading {
-    pub(super) fn sample(&self) -> &Sample {
+    pub(crate) fn sample(&self) -> &Sample {
         &self.diagnostic.sample
     }
 
     /// Returns the place with its field; none outside the field model's years.
-    pub(super) fn place(&self) -> Option<LastPlace> {
+    pub(crate) fn place(&self) -> Option<LastPlace> {
         let (variation, earth) = self.variation.zip(self.earth)?;
         Some(LastPlace {
             time: self.sample().time,
@@ -45,7 +45,7 @@ impl Reading {
 
 /// Returns the distinct samples in order of time, with the field and the reasons against
 /// their use that need no fit.
-pub(super) fn readings(
+pub(crate) fn readings(
     samples: &[Sample],
     logbook: &[LogbookEntry],
     settings: &AnalysisSettings,
@@ -115,7 +115,7 @@ fn corrected_gyro(sample: &Sample, speed_error: GyroSpeedError) -> Option<TrueHe
 }
 
 /// Returns the headings of a reading; none without a reference or a field.
-pub(super) fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
+pub(crate) fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
     let sample = reading.sample();
     let (variation, earth) = reading.variation.zip(reading.earth)?;
     if reading.gyro.is_none() && sample.satellite.is_none() {

@@ -3,7 +3,7 @@
 //! ([`fit_robust`]).
 
 mod csv_row;
-mod heading_check;
+pub(crate) mod heading_check;
 mod normal_equations;
 mod ols;
 mod paper;

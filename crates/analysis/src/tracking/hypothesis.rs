@@ -5,8 +5,11 @@ use super::kinds::{Ending, Kind};
 use super::levels::Levels;
 use super::row::Row;
 use super::scalar::{Scalar, Silent, deviation, difference};
-use super::states::GYRO;
+use super::ship_state::ShipState;
+use super::states::{ALIGNMENT, BX, BY, GYRO, STATES};
 use super::transition::Transition;
+use binnacle_compass::logbook::LogbookKind;
+use binnacle_compass::ship::PARAMETERS;
 use binnacle_compass::time::Timestamp;
 
 /// Growth of a drifting ship's (bx, by), nT squared a second: 2 µT in thirty days.
@@ -17,6 +20,10 @@ const RAMP_DEG2_PER_S: f64 = 1.0 / 86_400.0;
 const STORM_S: f64 = 3600.0;
 const STORM_DEG: f64 = 1.2;
 
+/// Change of the induced parameters by work that leaves them, over the population.
+const WORKED_INDUCED: f64 = 0.4;
+/// Change of the alignment by work on the compass, degrees.
+const REALIGNED_DEG: f64 = 2.0;
 /// Probability of a wild reading.
 const WILD: f64 = 0.004;
 /// Ratio of a prediction's variance to the reading's from which the reading teaches much.
@@ -26,13 +33,28 @@ const TEACHES: f64 = 20.0;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Event {
     pub(crate) kind: Kind,
-    /// Last row before it, and its time.
-    pub(crate) after: usize,
+    /// Time of the last row before it.
     pub(crate) from: Timestamp,
     /// First row after its end.
     pub(crate) until: Option<Timestamp>,
     /// States before it, for its end.
     pub(crate) before: Option<Box<Marginal>>,
+    /// Ship before it, and before its end.
+    pub(crate) ship_before: Box<ShipState>,
+    pub(crate) ship_at_end: Option<Box<ShipState>>,
+    /// True if the ship was in port meanwhile.
+    pub(crate) in_port: bool,
+}
+
+/// Circumstances in which an event begins or ends.
+#[derive(Clone, Debug)]
+pub(crate) struct Begin {
+    /// Time of the last row before.
+    pub(crate) time: Timestamp,
+    /// Ship until then.
+    pub(crate) ship: ShipState,
+    /// True if the ship was in port meanwhile.
+    pub(crate) in_port: bool,
 }
 
 /// Account of what happened.
@@ -155,14 +177,8 @@ impl Hypothesis {
         }
     }
 
-    /// Returns the hypothesis with one more event after row `after`.
-    pub(crate) fn with_event(
-        &self,
-        kind: Kind,
-        after: usize,
-        from: Timestamp,
-        log_prior: f64,
-    ) -> Hypothesis {
+    /// Returns the hypothesis with one more event.
+    pub(crate) fn with_event(&self, kind: Kind, begin: &Begin, log_prior: f64) -> Hypothesis {
         let mut next = self.clone();
         let states = kind.returning_states();
         let before = (!states.is_empty())
@@ -172,33 +188,52 @@ impl Hypothesis {
         }
         next.events.push(Event {
             kind,
-            after,
-            from,
+            from: begin.time,
             until: None,
             before,
+            ship_before: Box::new(begin.ship.clone()),
+            ship_at_end: None,
+            in_port: begin.in_port,
         });
         next.log_prior += log_prior;
         next
     }
 
+    /// Forgets what work on ship or compass undid.
+    pub(crate) fn renew(&mut self, kind: LogbookKind) {
+        let mut free = [WORKED_INDUCED; PARAMETERS];
+        (free[BX], free[BY]) = (1.0, 1.0);
+        if kind.preserves_soft_iron() {
+            for (j, sd) in free.iter().enumerate() {
+                self.filter.covariance[j][j] += sd * sd;
+            }
+        } else {
+            let states: Vec<usize> = (0..PARAMETERS).collect();
+            let anew = Filter::new([0.0; STATES], &[1.0; STATES]);
+            self.filter.restore(&Marginal::from_filter(&anew, &states));
+            self.filter.covariance[ALIGNMENT][ALIGNMENT] += REALIGNED_DEG * REALIGNED_DEG;
+        }
+    }
+
     /// Returns the hypotheses in which one of the lasting events ends now.
-    pub(crate) fn endings(&self, now: Timestamp, spacing_s: f64, in_port: bool) -> Vec<Hypothesis> {
+    pub(crate) fn endings(&self, begin: &Begin, spacing_s: f64) -> Vec<Hypothesis> {
         let lasting = self.events.iter().enumerate();
         let lasting = lasting.filter(|(_, event)| event.until.is_none());
         let ended = lasting.filter_map(|(i, event)| {
             let probability = match event.kind.row().ending {
                 Ending::After(mean_s) => spacing_s / mean_s,
-                Ending::InPort(share) if in_port => share,
+                Ending::InPort(share) if begin.in_port => share,
                 _ => return None,
             };
-            Some(self.with_end(i, now, probability.min(0.5).ln()))
+            Some(self.with_end(i, begin, probability.min(0.5).ln()))
         });
         ended.collect()
     }
 
-    fn with_end(&self, event: usize, now: Timestamp, log_prior: f64) -> Hypothesis {
+    pub(crate) fn with_end(&self, event: usize, begin: &Begin, log_prior: f64) -> Hypothesis {
         let mut next = self.clone();
-        next.events[event].until = Some(now);
+        next.events[event].until = Some(begin.time);
+        next.events[event].ship_at_end = Some(Box::new(begin.ship.clone()));
         if let Some(before) = next.events[event].before.take() {
             next.filter.restore(&before);
         }

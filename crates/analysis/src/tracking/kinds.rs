@@ -1,6 +1,7 @@
 //! The table of events: how often each kind happens, what it moves, and how it ends.
 
 use super::states::{ALIGNMENT, ANOMALY, BX, BY, GYRO, SATELLITE, SETTLING};
+use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 
 /// Kind of event.
@@ -191,6 +192,16 @@ impl Kind {
             self,
             Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift
         )
+    }
+
+    /// Returns the probability that a logbook entry of some kind tells of such an event.
+    pub(crate) fn beside(self, entry: LogbookKind) -> Option<f64> {
+        match (self, entry) {
+            (Kind::Strike, LogbookKind::Lightning | LogbookKind::Shock) => Some(0.3),
+            (Kind::Cargo, LogbookKind::MagneticCargo) => Some(0.7),
+            (Kind::ShipDrift, entry) if entry.preserves_soft_iron() => Some(0.5),
+            _ => None,
+        }
     }
 
     /// Returns the states that the end of such an event sets back.

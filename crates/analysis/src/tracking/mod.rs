@@ -1,5 +1,6 @@
 //! Tracking of a ship's magnetism by weighed hypotheses (multiple-hypothesis tracking).
 
+mod analysis;
 mod evidence_sums;
 mod filter;
 mod hypothesis;
@@ -8,8 +9,12 @@ mod learning;
 mod levels;
 mod row;
 mod scalar;
+mod ship_state;
 mod starts;
 mod states;
+mod told_changes;
 mod tracker;
 mod transition;
 pub mod study;
+
+pub use analysis::analyse;

@@ -129,7 +129,7 @@ impl RowMaker {
             ),
             daily: [sin, cos],
             lagged_nt: self.lagged_nt,
-            roll_rad: None,
+            roll_rad: sample.roll_deg.map(f64::to_radians),
             rate_of_turn_deg_min: sample.rate_of_turn_deg_min.unwrap_or(0.0),
             white: self.scatter.white(&observation),
             difference_white: WhiteNoise::of_difference(&observation),

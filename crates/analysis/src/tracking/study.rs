@@ -66,7 +66,7 @@ pub fn run(samples: &[Sample]) -> Run {
         mean: f.mean,
         sd: std::array::from_fn(|i| f.covariance[i][i].max(0.0).sqrt()),
         levels: Level::ALL.iter().map(|l| (format!("{l:?}"), tracker.levels().at(*l))).collect(),
-        told: tracker.told.iter().map(|t| (format!("{:?} {:?}", t.class, t.kind), t.from, t.at, t.withdrawn)).collect(),
+        told: tracker.told.iter().map(|t| (format!("{:?} {:?}", t.class, t.event.kind), t.event.from, t.at, t.withdrawn)).collect(),
         leads,
     }
 }

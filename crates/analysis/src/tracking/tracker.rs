@@ -2,14 +2,16 @@
 
 use super::evidence_sums::EvidenceSums;
 use super::filter::Filter;
-use super::hypothesis::{Hypothesis, Read};
+use super::hypothesis::{Begin, Event, Hypothesis, Read};
 use super::kinds::{KINDS, Kind, KindRow};
 use super::learning::Learning;
 use super::levels::Levels;
 use super::row::{Placed, Row, RowMaker};
+use super::ship_state::ShipState;
 use super::starts::starts;
 use super::transition::Transition;
 use binnacle_compass::angle::wrap_180;
+use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::time::Timestamp;
 use std::collections::VecDeque;
 
@@ -42,9 +44,17 @@ const ALIKE: f64 = 0.4;
 /// speak of the same event.
 const TOLD: f64 = 0.99;
 const TOLD_SAME_S: f64 = 86_400.0;
+/// Posterior probability below which a told event is withdrawn, and time for which an event
+/// is told anew as more is known.
+const WITHDRAWN: f64 = 0.3;
+const REFRESHED_S: f64 = 20.0 * 86_400.0;
 /// Greatest turn of an instrument that stood, and least of a ship that turned, degrees.
 const STOOD_DEG: f64 = 2.0;
 const TURNED_DEG: f64 = 10.0;
+/// Log weight below the best's from which a hypothesis is left out of the mixture.
+const NEGLIGIBLE: f64 = 7.0;
+/// Probability that a ship is as before once the logbook says that her cargo is ashore.
+const DISCHARGED: f64 = 0.7;
 const YEAR_S: f64 = 365.25 * 86_400.0;
 
 /// Filter after some row, with the sums until then.
@@ -54,7 +64,7 @@ struct Checkpoint {
     time: Timestamp,
     lead: Hypothesis,
     sums: EvidenceSums,
-    in_port: bool,
+    begin: Begin,
 }
 
 /// Accounts of what happened to a ship, by the rows so far.
@@ -109,10 +119,14 @@ impl Class {
 #[derive(Clone, Debug)]
 pub(crate) struct Told {
     pub(crate) class: Class,
-    pub(crate) kind: Kind,
-    pub(crate) from: Timestamp,
+    pub(crate) event: Event,
+    /// Row that made it certain.
     pub(crate) at: Timestamp,
     pub(crate) withdrawn: Option<Timestamp>,
+    /// Probability of each kind, the likeliest first.
+    pub(crate) kinds: Vec<(Kind, f64)>,
+    pub(crate) earliest: Timestamp,
+    pub(crate) latest: Timestamp,
 }
 
 /// Row as the lead predicted and read it.
@@ -171,14 +185,41 @@ impl Tracker {
         Some(tracked)
     }
 
+    /// Returns the circumstances of what begins between the last row and the next.
+    fn begin(&self, row: &Row) -> Begin {
+        let last = self.rows.back().unwrap_or(row);
+        Begin {
+            time: last.time,
+            ship: self.ship(last),
+            in_port: row.after_port,
+        }
+    }
+
+    /// Returns the ship by all hypotheses.
+    fn ship(&self, row: &Row) -> ShipState {
+        let best = self.best();
+        let plausible = self.bank.iter().filter(|h| h.log_weight() > best - NEGLIGIBLE);
+        let weighed: Vec<(f64, ShipState)> = plausible
+            .map(|h| ((h.log_weight() - best).exp(), ShipState::from_filter(&h.filter, row)))
+            .collect();
+        let (weights, states): (Vec<f64>, Vec<ShipState>) = weighed.into_iter().unzip();
+        ShipState::mixed(&states, &weights)
+    }
+
+    /// Returns the ship after the last row, if there was one.
+    pub(crate) fn current_ship(&self) -> Option<ShipState> {
+        self.rows.back().map(|row| self.ship(row))
+    }
+
     fn keep_checkpoint(&mut self, row: &Row) {
-        let time = self.rows.back().map_or(row.time, |row| row.time);
+        let begin = self.begin(row);
+        let time = begin.time;
         self.checkpoints.push_back(Checkpoint {
             after: self.count,
             time,
             lead: self.bank[0].clone(),
             sums: self.sums,
-            in_port: row.after_port,
+            begin,
         });
     }
 
@@ -221,13 +262,13 @@ impl Tracker {
     }
 
     fn suppose_endings(&mut self, row: &Row) {
-        let now = row.time;
+        let begin = self.begin(row);
         let spacing_s = END_ROWS as f64 * row.seconds.clamp(60.0, 3600.0);
         let best = self.best();
         let mut ended: Vec<Hypothesis> = Vec::new();
         for hypothesis in &self.bank {
             if hypothesis.log_weight() > best - 6.0 {
-                ended.extend(hypothesis.endings(now, spacing_s, row.after_port));
+                ended.extend(hypothesis.endings(&begin, spacing_s));
             }
         }
         self.bank.extend(ended);
@@ -331,7 +372,7 @@ impl Tracker {
         let next = self.checkpoints.get(place + 1);
         let next = next.map_or(self.rows.back()?.time, |next| next.time);
         let exposure_s = next.seconds_since(checkpoint.time).clamp(600.0, 7200.0);
-        let probability = if checkpoint.in_port {
+        let probability = if checkpoint.begin.in_port {
             kind.a_call
         } else {
             kind.a_year * exposure_s / YEAR_S
@@ -400,7 +441,7 @@ impl Tracker {
         let levels = *self.learning.levels();
         let checkpoint = &self.checkpoints[place];
         let from = checkpoint.time;
-        let mut hypothesis = checkpoint.lead.with_event(kind, checkpoint.after, from, log_prior);
+        let mut hypothesis = checkpoint.lead.with_event(kind, &checkpoint.begin, log_prior);
         for row in self.rows.iter().skip(checkpoint.after - self.first_kept) {
             let usual = Transition::to(row, &levels);
             hypothesis.read(row, &levels, &usual);
@@ -472,37 +513,172 @@ impl Tracker {
 
     /// Tells events that have become certain, and withdraws those that no longer are.
     fn tell(&mut self, now: Timestamp) {
-        let best = self.best();
-        let weights: Vec<f64> = self.bank.iter().map(|h| (h.log_weight() - best).exp()).collect();
-        let total: f64 = weights.iter().sum();
-        let probability = |from: Timestamp, such: &dyn Fn(Kind) -> bool| -> f64 {
-            let has = |h: &Hypothesis| h.events.iter().any(|e| such(e.kind) && e.from.seconds_since(from).abs() < TOLD_SAME_S);
-            self.bank.iter().zip(&weights).filter(|(h, _)| has(h)).map(|(_, w)| w).sum::<f64>() / total
-        };
+        let marginals = Marginals::new(&self.bank);
         for told in &mut self.told {
-            if told.withdrawn.is_none() && now.seconds_since(told.from) < 30.0 * 86_400.0 {
-                let class = told.class;
-                let p = probability(told.from, &|kind| Class::of(kind) == class);
-                if p < 0.3 { told.withdrawn = Some(now); }
+            let is_open = now.seconds_since(told.event.from) < REFRESHED_S;
+            if told.withdrawn.is_some() || !(is_open || told.event.until.is_none()) {
+                continue;
+            }
+            let found = marginals.event(told.class, told.event.from);
+            if is_open && found.probability < WITHDRAWN {
+                told.withdrawn = Some(now);
+            } else if found.probability > 0.5 && let Some(event) = marginals.leads(told.class, told.event.from) {
+                told.event.until = event.until;
+                told.event.ship_at_end = event.ship_at_end.clone();
+                if is_open {
+                    told.event = event.clone();
+                    told.kinds = found.kinds;
+                    told.earliest = found.earliest;
+                    told.latest = found.latest;
+                }
             }
         }
         let mut more = Vec::new();
         for event in &self.bank[0].events {
             let class = Class::of(event.kind);
-            let is_told = self.told.iter().any(|t| t.class == class && t.withdrawn.is_none() && t.from.seconds_since(event.from).abs() < TOLD_SAME_S);
-            if is_told { continue; }
-            let p = probability(event.from, &|kind| Class::of(kind) == class);
-            if p > TOLD {
-                more.push(Told { class, kind: event.kind, from: event.from, at: now, withdrawn: None });
+            let is_told = |told: &Told| {
+                told.class == class
+                    && told.withdrawn.is_none()
+                    && told.event.from.seconds_since(event.from).abs() < TOLD_SAME_S
+            };
+            if self.told.iter().any(is_told) || now.seconds_since(event.from) > REFRESHED_S {
+                continue;
+            }
+            let found = marginals.event(class, event.from);
+            if found.probability > TOLD {
+                more.push(Told {
+                    class,
+                    event: event.clone(),
+                    at: now,
+                    withdrawn: None,
+                    kinds: found.kinds,
+                    earliest: found.earliest,
+                    latest: found.latest,
+                });
             }
         }
         self.told.extend(more);
+    }
+
+    /// Takes note of logbook entries of the time since the last row, before `placed` is read.
+    pub(crate) fn note(&mut self, kind: LogbookKind) {
+        let Some(row) = self.rows.back().cloned() else {
+            return;
+        };
+        let begin = Begin {
+            time: row.time,
+            ship: self.ship(&row),
+            in_port: true,
+        };
+        if kind.ends_an_epoch() {
+            for hypothesis in &mut self.bank {
+                hypothesis.renew(kind);
+            }
+            self.checkpoints.clear();
+            self.tried.clear();
+            self.sums = self.sums.restarted();
+        }
+        let mut more = Vec::new();
+        for row in &KINDS {
+            let Some(probability) = row.kind.beside(kind) else {
+                continue;
+            };
+            for hypothesis in &mut self.bank {
+                more.push(hypothesis.with_event(row.kind, &begin, probability.ln()));
+                hypothesis.log_prior += (1.0 - probability).ln();
+            }
+        }
+        self.bank.extend(more);
+        self.learning.restart(&self.bank[0]);
+    }
+
+    /// Takes note that a cargo was discharged by the logbook.
+    pub(crate) fn note_discharge(&mut self) {
+        let Some(row) = self.rows.back().cloned() else {
+            return;
+        };
+        let begin = Begin {
+            time: row.time,
+            ship: self.ship(&row),
+            in_port: true,
+        };
+        let mut more = Vec::new();
+        for hypothesis in &self.bank {
+            let lasting = hypothesis.events.iter().rposition(|e| e.kind == Kind::Cargo && e.until.is_none());
+            more.extend(lasting.map(|event| hypothesis.with_end(event, &begin, DISCHARGED.ln())));
+        }
+        self.bank.extend(more);
     }
 
     /// Returns the levels learnt.
     pub(crate) fn levels(&self) -> &Levels {
         self.learning.levels()
     }
+}
+
+/// Marginals of the posterior over events.
+struct Marginals<'a> {
+    bank: &'a [Hypothesis],
+    weights: Vec<f64>,
+}
+
+/// Marginal of one event.
+struct Found {
+    probability: f64,
+    kinds: Vec<(Kind, f64)>,
+    earliest: Timestamp,
+    latest: Timestamp,
+}
+
+impl<'a> Marginals<'a> {
+    fn new(bank: &'a [Hypothesis]) -> Marginals<'a> {
+        let best = bank.iter().map(Hypothesis::log_weight).fold(f64::NEG_INFINITY, f64::max);
+        let weights: Vec<f64> = bank.iter().map(|h| (h.log_weight() - best).exp()).collect();
+        let total: f64 = weights.iter().sum();
+        Marginals {
+            bank,
+            weights: weights.into_iter().map(|w| w / total).collect(),
+        }
+    }
+
+    /// Returns the lead's event of a class at about a time.
+    fn leads(&self, class: Class, from: Timestamp) -> Option<&'a Event> {
+        nearest(&self.bank[0], class, from)
+    }
+
+    /// Returns the marginal of an event of a class at about a time.
+    fn event(&self, class: Class, from: Timestamp) -> Found {
+        let mut found = Found {
+            probability: 0.0,
+            kinds: Vec::new(),
+            earliest: from,
+            latest: from,
+        };
+        for (hypothesis, weight) in self.bank.iter().zip(&self.weights) {
+            let Some(event) = nearest(hypothesis, class, from) else {
+                continue;
+            };
+            found.probability += weight;
+            match found.kinds.iter_mut().find(|(kind, _)| *kind == event.kind) {
+                Some((_, sum)) => *sum += weight,
+                None => found.kinds.push((event.kind, *weight)),
+            }
+            if *weight > 0.02 {
+                found.earliest = found.earliest.min(event.from);
+                found.latest = found.latest.max(event.from);
+            }
+        }
+        found.kinds.sort_by(|a, b| b.1.total_cmp(&a.1));
+        found
+    }
+}
+
+/// Returns a hypothesis's event of a class nearest to a time, within a day.
+fn nearest(hypothesis: &Hypothesis, class: Class, from: Timestamp) -> Option<&Event> {
+    let events = hypothesis.events.iter().filter(|e| Class::of(e.kind) == class);
+    let apart = |e: &Event| e.from.seconds_since(from).abs();
+    let near = events.filter(|e| apart(e) < TOLD_SAME_S);
+    near.min_by(|a, b| apart(a).total_cmp(&apart(b)))
 }
 
 /// Returns true if two hypotheses suppose the same events.
