@@ -10,7 +10,6 @@ use super::kinds::{Jump, KindRow};
 use super::row::Row;
 use super::scalar::{Silent, gyro_share};
 use super::states::{ALIGNMENT, BX, BY, GYRO, SATELLITE, SETTLING};
-use crate::estimate::weight;
 use nalgebra::{DMatrix, DVector};
 
 /// States whose jumps are looked for.
@@ -20,6 +19,8 @@ const LARGEST_SQUARE: f64 = 16.0;
 /// Cost in squares of taking the noise for a disturbance's: twice the logarithm of the ratio of
 /// standard deviations.
 const WIDER_COST: f64 = 2.0;
+/// Largest innovation that counts for a jump, standard deviations.
+const LARGEST_SD: f64 = 6.0;
 /// Innovations over which the usual square is taken.
 const USUAL_ROWS: f64 = 2000.0;
 const SUMS: usize = WATCHED.len();
@@ -49,9 +50,10 @@ impl EvidenceSums {
 
     fn add_scalar(&mut self, load: &[f64; SUMS], innovation: super::filter::Innovation) {
         let z_squared = innovation.z_squared();
-        let weight = weight(z_squared) / innovation.variance;
+        let capped = (LARGEST_SD * LARGEST_SD / z_squared).sqrt().min(1.0);
+        let weight = 1.0 / innovation.variance;
         for i in 0..SUMS {
-            self.score[i] += load[i] * innovation.value * weight;
+            self.score[i] += load[i] * innovation.value * capped * weight;
             for j in 0..SUMS {
                 self.information[i][j] += load[i] * load[j] * weight;
             }

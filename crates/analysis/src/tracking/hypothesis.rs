@@ -87,9 +87,10 @@ impl Read {
 }
 
 impl Hypothesis {
-    /// Returns true if it takes nothing from the compass.
-    pub(crate) fn is_muted(&self) -> bool {
-        self.silent().compass
+    /// Returns true if what a row teaches now is the ship and not some passing error.
+    pub(crate) fn learns_the_ship(&self) -> bool {
+        let passing = |kind: Kind| kind.passes_by() || kind == Kind::GyroSettling;
+        !self.silent().compass && !self.lasting().any(passing)
     }
 
     /// Returns the logarithm of its weight, to be compared with others' of the same rows.
@@ -146,6 +147,7 @@ impl Hypothesis {
         usual: &Transition,
         silent: Silent,
     ) -> Read {
+        self.survive(row.seconds);
         let mut own;
         let transition = if self.events.iter().all(|event| event.until.is_some()) {
             usual
@@ -162,6 +164,15 @@ impl Hypothesis {
             difference: by_difference,
             deviation: self.filter.update(&load),
             load,
+        }
+    }
+
+    /// Counts how improbable it is that its lasting events have lasted as long.
+    fn survive(&mut self, seconds: f64) {
+        for event in self.events.iter().filter(|event| event.until.is_none()) {
+            if let Ending::After(mean_s) = event.kind.row().ending {
+                self.log_prior -= seconds / mean_s;
+            }
         }
     }
 

@@ -233,7 +233,7 @@ impl Tracker {
             let before = hypothesis.clone();
             let is_plausible = hypothesis.log_weight() > best - 5.0;
             let read = hypothesis.read(row, &levels, &usual);
-            if is_plausible && read.teaches() && !hypothesis.is_muted() {
+            if is_plausible && read.teaches() && hypothesis.learns_the_ship() {
                 wild.push(before.after_wild(self.count, row, &levels, &usual));
             }
             let before = before.filter.log_likelihood;
