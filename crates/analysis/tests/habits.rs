@@ -118,14 +118,22 @@ fn a_sticking_card_is_off_by_no_more_than_its_friction() {
 }
 
 #[test]
-fn a_reference_in_whole_degrees_has_no_others() {
+fn instruments_in_whole_degrees_show_no_others() {
     let habits = Habits {
         reference_digit_deg: 1.0,
-        compass_digit_deg: 0.5,
+        ..Habits::default()
+    };
+    let off = apart(&plain(), &sail(habits, Incident::Nothing), gyro);
+    // Ten roundings on a ship that yaws.
+    let squares: f64 = off.iter().map(|x| x * x).sum();
+    let rms = (squares / off.len() as f64).sqrt();
+    assert!((0.05..0.15).contains(&rms), "{rms}");
+    let habits = Habits {
+        sample_digit_deg: 0.5,
         ..Habits::default()
     };
     let log = sail(habits, Incident::Nothing);
-    assert!(log.samples.iter().all(|s| gyro(s).fract() == 0.0));
+    assert!(log.samples.iter().all(|s| (2.0 * gyro(s)).fract() == 0.0));
     assert!(
         log.samples
             .iter()

@@ -10,6 +10,8 @@ use binnacle_compass::result::{Analysis, Cause, Change};
 use std::collections::BTreeMap;
 
 const SEEDS: u64 = 4_000_000;
+/// Duration of a drift.
+const RAMP_DAYS: f64 = 20.0;
 /// Lower edges of the stated probabilities in the table of calibration.
 const BINS: [f64; 5] = [0.0, 0.5, 0.8, 0.9, 0.97];
 
@@ -126,7 +128,7 @@ pub(crate) const ROWS: [Row; 13] = [
         p.faults.storms_per_month = 1.5;
     }),
     row("drift", Name::Ramp, Cause::Drift, 90.0, |p| {
-        p.event = Event::Ramp(2000.0, 20.0);
+        p.event = Event::Ramp(2000.0, RAMP_DAYS);
     }),
 ];
 
@@ -173,7 +175,8 @@ fn events(arguments: &Arguments, row: &Row, seed: u64) -> Vec<Named> {
     let happened = log.happened.iter().filter(|h| h.what == row.event);
     let seen = happened.filter(|h| row.event != Name::Storm || at_sea(&log, h));
     seen.map(|h| {
-        let change = telling(&analysis, h);
+        let h = &lasting(h);
+        let change = telling(row, &analysis, h);
         if arguments.words && change.is_none_or(|c| c.cause != row.cause) {
             print_wrong(seed, h, &analysis);
         }
@@ -197,15 +200,30 @@ fn named(row: &Row, change: Option<&Change>, analysis: &Analysis, h: &Happened) 
     }
 }
 
-/// Returns the change that reports an event, if there is one.
-fn telling<'a>(analysis: &'a Analysis, h: &Happened) -> Option<&'a Change> {
+/// Returns an event with its end: what grows can be seen at any time meanwhile.
+fn lasting(h: &Happened) -> Happened {
+    let grows = h.what == Name::Ramp;
+    Happened {
+        to: h
+            .to
+            .or(grows.then(|| h.from.plus_seconds(RAMP_DAYS * DAY_S))),
+        ..*h
+    }
+}
+
+/// Returns the change that reports an event, if there is one. A fault or a storm may be
+/// reported in parts, of which the rightly named one counts.
+fn telling<'a>(row: &Row, analysis: &'a Analysis, h: &Happened) -> Option<&'a Change> {
     let reports = analysis.changes.iter().filter(|c| {
         c.confirmed && c.detected_at >= h.from && near(h, c) && h.from.seconds_since(c.from) < DAY_S
     });
     let reports: Vec<&Change> = reports.collect();
     // A disturbance withdrawn in favour of a change counts as the change.
-    let lasting = reports.iter().find(|c| c.cause.changes_deviation());
-    lasting.or(reports.first()).copied()
+    let counts = |c: &&&Change| match row.cause {
+        cause if cause.changes_deviation() => c.cause.changes_deviation(),
+        cause => c.cause == cause,
+    };
+    reports.iter().find(counts).or(reports.first()).copied()
 }
 
 /// Returns true if samples were taken through most of it.

@@ -18,25 +18,17 @@ const FAR_DEG: f64 = 40.0;
 pub(crate) struct Held {
     pub(crate) headings: u32,
     pub(crate) covered: u32,
-    /// Sum of the variances, square degrees.
-    pub(crate) variances: f64,
 }
 
 impl Held {
     pub(crate) fn merge(&mut self, other: Held) {
         self.headings += other.headings;
         self.covered += other.covered;
-        self.variances += other.variances;
     }
 
     /// Part of the headings in per cent.
-    pub(crate) fn percent(&self) -> f64 {
+    pub(crate) fn percent(self) -> f64 {
         100.0 * f64::from(self.covered) / f64::from(self.headings)
-    }
-
-    /// Half the width of the band, root mean square in degrees.
-    pub(crate) fn half_width_deg(&self) -> f64 {
-        1.96 * (self.variances / f64::from(self.headings)).sqrt()
     }
 }
 
@@ -66,7 +58,6 @@ fn held(model: &Model, truth: &Truth) -> Held {
         let (deviation, se) = predicted(model, compass_deg, truth.h_nt, truth.z_nt);
         held.headings += 1;
         held.covered += u32::from(wrap_180(deviation - true_deg).abs() <= 1.96 * se);
-        held.variances += se * se;
     }
     held
 }

@@ -31,7 +31,7 @@ const fn row(name: &'static str, target: f64, habit: fn(&mut Plan)) -> Row {
     }
 }
 
-pub(crate) const ROWS: [Row; 23] = [
+pub(crate) const ROWS: [Row; 24] = [
     row("plain", 0.1, |_| {}),
     row("retention_0.5", 0.3, |p| p.habits.retentive_share = 0.005),
     row("retention_1", 0.3, |p| p.habits.retentive_share = 0.01),
@@ -50,6 +50,7 @@ pub(crate) const ROWS: [Row; 23] = [
     row("friction_12", 1.0, |p| p.habits.friction_deg_ut = 12.0),
     row("half_degrees", 0.1, |p| round(p, 0.5)),
     row("whole_degrees", 0.1, |p| round(p, 1.0)),
+    row("whole_calm", 0.1, |p| p.habits.sample_digit_deg = 1.0),
     row("heavy_weather", 0.1, |p| p.habits.weather = 0.5),
     row("heavy_tails", 0.1, |p| p.habits.tails_deg = 0.15),
     row("constant_0.75", 0.1, |p| {

@@ -239,7 +239,7 @@ impl Sailing<'_> {
         let field = (met.variation_deg, moment.h_nt, met.z_nt);
         let read = self.errors.read(felt, passage, moment.minute, field, rng);
         let read = self.habits.read(moment, read);
-        let read = self.incidents.read(moment, read);
+        let read = self.habits.shown(self.incidents.read(moment, read));
         let at = Sample {
             sog_kn: Some(passage.speed_kn),
             rate_of_turn_deg_min: Some(0.0),

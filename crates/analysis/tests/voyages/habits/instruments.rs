@@ -87,18 +87,18 @@ impl Instruments {
     }
 }
 
-/// Adds the error of a whole sample, and rounds as its instruments do.
+/// Adds the error of a whole sample, and rounds it.
 pub(super) fn finish(sizes: &Habits, sample: &mut Sample, rng: &mut ChaCha8Rng) {
     let off = sizes.tails_deg * student(rng);
-    let compass = rounded(sample.compass.degrees() + off, sizes.compass_digit_deg);
+    let compass = rounded(sample.compass.degrees() + off, sizes.sample_digit_deg);
     sample.compass = CompassHeading::new(compass).unwrap_or(sample.compass);
     for reference in [&mut sample.gyro, &mut sample.satellite] {
-        let read = reference.map(|read| rounded(read.degrees(), sizes.reference_digit_deg));
+        let read = reference.map(|read| rounded(read.degrees(), sizes.sample_digit_deg));
         *reference = read.and_then(TrueHeading::new);
     }
 }
 
-fn rounded(degrees: f64, digit_deg: f64) -> f64 {
+pub(super) fn rounded(degrees: f64, digit_deg: f64) -> f64 {
     if digit_deg > 0.0 {
         (degrees / digit_deg).round() * digit_deg
     } else {

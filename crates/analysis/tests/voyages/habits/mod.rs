@@ -58,9 +58,12 @@ pub(crate) struct Habits {
     pub(crate) heading_error_deg: f64,
     /// Error of the compass's zero from the first day.
     pub(crate) zero_off_deg: f64,
-    /// Steps in which compass and references are read.
+    /// Steps in which compass and references are read every minute.
     pub(crate) compass_digit_deg: f64,
     pub(crate) reference_digit_deg: f64,
+    /// Steps of all samples: where a ship does not yaw, every reading of ten minutes is
+    /// rounded alike.
+    pub(crate) sample_digit_deg: f64,
 }
 
 /// State of the habits.
@@ -108,6 +111,17 @@ impl HabitState {
     /// Returns the readings of compass, gyro and satellite compass with the habits' errors.
     pub(super) fn read(&self, now: &Moment, read: [f64; 3]) -> [f64; 3] {
         self.instruments.read(&self.sizes, now, read)
+    }
+
+    /// Returns readings in the digits of their instruments.
+    pub(super) fn shown(&self, read: [f64; 3]) -> [f64; 3] {
+        let [compass, gyro, satellite] = read;
+        let digit_deg = self.sizes.reference_digit_deg;
+        [
+            instruments::rounded(compass, self.sizes.compass_digit_deg),
+            instruments::rounded(gyro, digit_deg),
+            instruments::rounded(satellite, digit_deg),
+        ]
     }
 
     /// Returns the list, where it is measured.
