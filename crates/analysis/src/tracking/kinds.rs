@@ -76,9 +76,9 @@ const DAY_S: f64 = 86_400.0;
 pub(crate) const KINDS: [KindRow; 13] = [
     KindRow {
         kind: Kind::Strike,
-        a_year: 0.1,
+        a_year: 0.3,
         a_call: 0.002,
-        jumps: &[jump(BX, 1.3), jump(BY, 1.3), jump(4, 0.1), jump(5, 0.1), jump(6, 0.1)],
+        jumps: &[jump(BX, 2.0), jump(BY, 2.0), jump(4, 0.1), jump(5, 0.1), jump(6, 0.1)],
         ending: Ending::InPort(0.02),
     },
     KindRow {

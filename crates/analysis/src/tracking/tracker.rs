@@ -19,6 +19,8 @@ use std::collections::VecDeque;
 const KEPT_ROWS: usize = 432;
 /// Rows between checkpoints.
 const CHECKPOINT_ROWS: usize = 6;
+/// Rows of late after each of which there is a checkpoint.
+const RECENT_ROWS: usize = 12;
 /// Rows between looks for events, and for ends of events.
 const LOOK_ROWS: usize = 2;
 const END_ROWS: usize = 6;
@@ -26,6 +28,8 @@ const END_ROWS: usize = 6;
 const GIVEN_UP: f64 = 16.0;
 /// Most hypotheses.
 const MOST_HYPOTHESES: usize = 24;
+/// Starts of an event that are weighed at a time.
+const STARTS: usize = 2;
 /// Log posterior ratio from which an event is supposed.
 const SUPPOSED: f64 = -4.0;
 /// Rise of it from which an event is weighed again.
@@ -42,7 +46,7 @@ const ALIKE_ROWS: usize = 36;
 const ALIKE: f64 = 0.4;
 /// Posterior probability from which an event is told, and seconds within which two accounts
 /// speak of the same event.
-const TOLD: f64 = 0.99;
+const TOLD: f64 = 0.98;
 const TOLD_SAME_S: f64 = 86_400.0;
 /// Posterior probability below which a told event is withdrawn, and time for which an event
 /// is told anew as more is known.
@@ -159,9 +163,7 @@ impl Tracker {
             self.bank = starts(&row, self.learning.levels(), self.reference_sd_deg);
             self.learning.restart(&self.bank[0]);
         }
-        if row.after_port || self.count.is_multiple_of(CHECKPOINT_ROWS) {
-            self.keep_checkpoint(&row);
-        }
+        self.keep_checkpoint(&row);
         if row.after_port || self.count.is_multiple_of(END_ROWS) {
             self.suppose_endings(&row);
         }
@@ -188,9 +190,10 @@ impl Tracker {
     /// Returns the circumstances of what begins between the last row and the next.
     fn begin(&self, row: &Row) -> Begin {
         let last = self.rows.back().unwrap_or(row);
+        let recent = self.checkpoints.back().filter(|_| !row.after_port && !self.count.is_multiple_of(CHECKPOINT_ROWS));
         Begin {
             time: last.time,
-            ship: self.ship(last),
+            ship: recent.map_or_else(|| self.ship(last), |recent| recent.begin.ship.clone()),
             in_port: row.after_port,
         }
     }
@@ -214,6 +217,12 @@ impl Tracker {
     fn keep_checkpoint(&mut self, row: &Row) {
         let begin = self.begin(row);
         let time = begin.time;
+        if let Some(old) = self.checkpoints.len().checked_sub(RECENT_ROWS)
+            && let Some(checkpoint) = self.checkpoints.get(old)
+            && !(checkpoint.begin.in_port || checkpoint.after.is_multiple_of(CHECKPOINT_ROWS))
+        {
+            self.checkpoints.remove(old);
+        }
         self.checkpoints.push_back(Checkpoint {
             after: self.count,
             time,
@@ -286,16 +295,15 @@ impl Tracker {
             if self.bank[0].has(kind.kind) && !kind.kind.changes_deviation() {
                 continue;
             }
-            let Some((place, log_prior, score)) = self.best_start(kind) else {
-                continue;
-            };
-            let from = self.checkpoints[place].time;
-            if self.was_tried(kind.kind, from, score) {
-                continue;
+            for (place, log_prior, score) in self.best_starts(kind) {
+                let from = self.checkpoints[place].time;
+                if self.was_tried(kind.kind, from, score) {
+                    continue;
+                }
+                self.tried.push(Tried { kind: kind.kind, from, score });
+                let hypothesis = self.replay(place, kind.kind, log_prior);
+                self.bank.push(hypothesis);
             }
-            self.tried.push(Tried { kind: kind.kind, from, score });
-            let hypothesis = self.replay(place, kind.kind, log_prior);
-            self.bank.push(hypothesis);
         }
     }
 
@@ -308,13 +316,12 @@ impl Tracker {
             if lead.has(kind.kind) && !kind.kind.changes_deviation() {
                 continue;
             }
-            let best = self.best_start(kind);
-            if let Some((place, log_prior, score)) = best
-                && score > SUPPOSED
-                && !self.was_tried(kind.kind, self.checkpoints[place].time, score)
-            {
-                proposals.push((place, kind, log_prior));
+            for (place, log_prior, score) in self.best_starts(kind) {
                 let from = self.checkpoints[place].time;
+                if score <= SUPPOSED || self.was_tried(kind.kind, from, score) {
+                    continue;
+                }
+                proposals.push((place, kind, log_prior));
                 tried.push(Tried { kind: kind.kind, from, score });
             }
         }
@@ -324,7 +331,7 @@ impl Tracker {
             if lead.has(rival.kind) || proposals.is_empty() {
                 continue;
             }
-            let own = self.best_start(rival).map(|(place, _, _)| place);
+            let own = self.best_starts(rival).into_iter().map(|(place, _, _)| place);
             let places: Vec<usize> =
                 proposals.iter().map(|(place, _, _)| *place).chain(own).collect();
             for place in places {
@@ -371,7 +378,7 @@ impl Tracker {
         let checkpoint = &self.checkpoints[place];
         let next = self.checkpoints.get(place + 1);
         let next = next.map_or(self.rows.back()?.time, |next| next.time);
-        let exposure_s = next.seconds_since(checkpoint.time).clamp(600.0, 7200.0);
+        let exposure_s = next.seconds_since(checkpoint.time).clamp(300.0, 7200.0);
         let probability = if checkpoint.begin.in_port {
             kind.a_call
         } else {
@@ -382,8 +389,8 @@ impl Tracker {
 
     /// Returns the checkpoint after which an event of a kind is likeliest: its place, the log
     /// prior of the event there, and its log posterior ratio.
-    fn best_start(&self, kind: &KindRow) -> Option<(usize, f64, f64)> {
-        let mut best: Option<(usize, f64, f64)> = None;
+    fn best_starts(&self, kind: &KindRow) -> Vec<(usize, f64, f64)> {
+        let mut starts: Vec<(usize, f64, f64)> = Vec::new();
         for (place, checkpoint) in self.checkpoints.iter().enumerate() {
             let Some(log_prior) = self.log_prior(place, kind) else {
                 continue;
@@ -417,11 +424,11 @@ impl Tracker {
                 }
             };
             let score = factor + log_prior;
-            if best.is_none_or(|(_, _, other)| score > other) {
-                best = Some((place, log_prior, score));
-            }
+            starts.push((place, log_prior, score));
         }
-        best
+        starts.sort_by(|a, b| b.2.total_cmp(&a.2));
+        starts.truncate(STARTS);
+        starts
     }
 
     /// Returns true if such an event was weighed at about that time, when it was about as
@@ -431,7 +438,7 @@ impl Tracker {
         let age_s = now.seconds_since(from).max(0.0);
         self.tried.iter().any(|tried| {
             tried.kind == kind
-                && tried.from.seconds_since(from).abs() <= 1200.0 + 0.2 * age_s
+                && tried.from.seconds_since(from).abs() <= 300.0 + 0.1 * age_s
                 && score < tried.score + TRIED_AGAIN
         })
     }
