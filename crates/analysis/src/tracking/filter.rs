@@ -23,6 +23,11 @@ pub(crate) struct Innovation {
 }
 
 impl Innovation {
+    /// Returns the loss of a reading with tails as heavy as instruments have.
+    pub(crate) fn loss(self) -> f64 {
+        robust_loss(self.z_squared())
+    }
+
     /// Returns the square in standard deviations.
     pub(crate) fn z_squared(self) -> f64 {
         self.value * self.value / self.variance
@@ -96,14 +101,14 @@ impl Filter {
         product
     }
 
-    /// Reads a scalar.
+    /// Reads a scalar. Its loss is left to the caller, who knows what else the row said.
     pub(crate) fn update(&mut self, scalar: &Scalar) -> Innovation {
         let gain = self.spread(&scalar.load);
         let value = scalar.innovation;
         let variance = scalar.variance + dot(&scalar.load, &gain);
         let innovation = Innovation { value, variance };
         let z_squared = innovation.z_squared();
-        self.log_likelihood -= 0.5 * (robust_loss(z_squared) + variance.ln());
+        self.log_likelihood -= 0.5 * variance.ln();
         let per_raised = weight(z_squared) / variance;
         for (mean, gain) in self.mean.iter_mut().zip(&gain) {
             *mean += gain * (per_raised * value);

@@ -26,6 +26,10 @@ const WORKED_INDUCED: f64 = 0.4;
 const REALIGNED_DEG: f64 = 2.0;
 /// Probability of a wild reading.
 const WILD: f64 = 0.004;
+/// Standard deviation of a row's share of a jump, degrees.
+const AMID_DEG: f64 = 3.0;
+/// Greatest loss of a row.
+const WORST_LOSS: f64 = 18.0;
 /// Ratio of a prediction's variance to the reading's from which the reading teaches much.
 const TEACHES: f64 = 20.0;
 
@@ -68,6 +72,8 @@ pub(crate) struct Hypothesis {
     pub(crate) start: usize,
     /// Row whose reading it holds to be wild, the last one.
     pub(crate) wild: Option<usize>,
+    /// True until the row is read in which the last event began or ended.
+    pub(crate) is_amid: bool,
 }
 
 /// Innovations of a row, with the loads that they had.
@@ -79,6 +85,12 @@ pub(crate) struct Read {
 }
 
 impl Read {
+    /// Returns the loss of the row: one wild instrument spoils all that it is compared with.
+    fn loss(&self) -> f64 {
+        let loss = self.deviation.loss() + self.difference.map_or(0.0, Innovation::loss);
+        loss.min(WORST_LOSS)
+    }
+
     /// Returns true if the row says more than was known before: then a wild reading would do
     /// harm that later ones take long to mend.
     pub(crate) fn teaches(&self) -> bool {
@@ -157,14 +169,25 @@ impl Hypothesis {
             &own
         };
         self.filter.advance(transition);
-        let by_difference = difference(row, &self.filter.mean, levels, silent)
-            .map(|scalar| self.filter.update(&scalar));
-        let load = deviation(row, &self.filter.mean, levels, silent);
-        Read {
+        // Part of the row in which something jumps lies before, and part after.
+        let amid = if std::mem::take(&mut self.is_amid) {
+            AMID_DEG * AMID_DEG
+        } else {
+            0.0
+        };
+        let by_difference = difference(row, &self.filter.mean, levels, silent).map(|mut scalar| {
+            scalar.variance += amid;
+            self.filter.update(&scalar)
+        });
+        let mut load = deviation(row, &self.filter.mean, levels, silent);
+        load.variance += amid;
+        let read = Read {
             difference: by_difference,
             deviation: self.filter.update(&load),
             load,
-        }
+        };
+        self.filter.log_likelihood -= 0.5 * read.loss();
+        read
     }
 
     /// Counts how improbable it is that its lasting events have lasted as long.
@@ -206,6 +229,7 @@ impl Hypothesis {
             ship_at_end: None,
             in_port: begin.in_port,
         });
+        next.is_amid = !kind.row().jumps.is_empty();
         next.log_prior += log_prior;
         next
     }
@@ -247,6 +271,7 @@ impl Hypothesis {
         next.events[event].ship_at_end = Some(Box::new(begin.ship.clone()));
         if let Some(before) = next.events[event].before.take() {
             next.filter.restore(&before);
+            next.is_amid = !next.events[event].kind.passes_by();
         }
         next.log_prior += log_prior;
         next

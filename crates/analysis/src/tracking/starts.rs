@@ -44,6 +44,7 @@ pub(crate) fn starts(row: &Row, levels: &Levels, reference_sd_deg: f64) -> Vec<H
                     log_prior: f64::ln(by_alignment * by_size * by_speed),
                     start: starts.len(),
                     wild: None,
+                    is_amid: false,
                 });
             }
         }
