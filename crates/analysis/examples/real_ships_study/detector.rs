@@ -13,8 +13,10 @@ use binnacle_compass::time::Timestamp;
 pub(crate) type Detector = fn(&[Sample], &[LogbookEntry], &AnalysisSettings) -> Analysis;
 
 /// Detectors and their names on the command line.
-pub(crate) const DETECTORS: [(&str, Detector); 2] =
-    [("old", analyse), ("new", binnacle_analysis::tracking::analyse)];
+pub(crate) const DETECTORS: [(&str, Detector); 2] = [
+    ("old", analyse),
+    ("new", binnacle_analysis::tracking::analyse),
+];
 
 /// Returns the detector of a name.
 pub(crate) fn find(name: &str) -> Result<Detector, String> {

@@ -35,9 +35,9 @@ pub(crate) use prior::POPULATION_SD;
 pub use prior::Prior;
 pub(crate) use prior::unseen_sd_nt;
 pub(crate) use robust_loss::{robust_loss, weight};
-pub(crate) use rows::{Direction, Needle, Scatter, WhiteNoise,
-    CONSTANT, LinearisationPoint, OFFSET_SD_DEG, Row, RowFrame, UNKNOWNS, USUAL_REFERENCE_SHARE,
-    Unknowns, frames, row,
+pub(crate) use rows::{
+    CONSTANT, Direction, LinearisationPoint, Needle, OFFSET_SD_DEG, Row, RowFrame, Scatter,
+    UNKNOWNS, USUAL_REFERENCE_SHARE, Unknowns, WhiteNoise, frames, row,
 };
 pub(crate) use solve::{Options, RoughEstimate, estimate, estimate_roughly};
 pub(crate) use undated_rows::are_times_plausible;

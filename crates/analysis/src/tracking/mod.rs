@@ -1,20 +1,9 @@
 //! Tracking of a ship's magnetism by weighed hypotheses (multiple-hypothesis tracking).
 
-mod analysis;
-mod evidence_sums;
-mod filter;
-mod hypothesis;
-mod kinds;
-mod learning;
-mod levels;
-mod row;
-mod scalar;
-mod ship_state;
-mod starts;
-mod states;
-mod told_changes;
-mod tracker;
-mod transition;
+mod hypotheses;
+mod report;
+mod state_space;
 pub mod study;
+mod tracker;
 
-pub use analysis::analyse;
+pub use report::analyse;

@@ -1,13 +1,13 @@
 //! One account of what happened: a filter, and the events that it supposes.
 
-use super::filter::{Filter, Innovation, Marginal};
 use super::kinds::{Ending, Kind};
-use super::levels::Levels;
-use super::row::Row;
-use super::scalar::{Scalar, Silent, deviation, difference};
-use super::ship_state::ShipState;
-use super::states::{ALIGNMENT, BX, BY, GYRO, STATES};
-use super::transition::Transition;
+use crate::tracking::state_space::filter::{Filter, Innovation, Marginal};
+use crate::tracking::state_space::levels::Levels;
+use crate::tracking::state_space::row::Row;
+use crate::tracking::state_space::scalar::{Scalar, Silent, deviation, difference};
+use crate::tracking::state_space::ship_state::ShipState;
+use crate::tracking::state_space::states::{ALIGNMENT, BX, BY, GYRO, STATES};
+use crate::tracking::state_space::transition::Transition;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 use binnacle_compass::time::Timestamp;
@@ -215,8 +215,8 @@ impl Hypothesis {
     pub(crate) fn with_event(&self, kind: Kind, begin: &Begin, log_prior: f64) -> Hypothesis {
         let mut next = self.clone();
         let states = kind.returning_states();
-        let before = (!states.is_empty())
-            .then(|| Box::new(Marginal::from_filter(&self.filter, &states)));
+        let before =
+            (!states.is_empty()).then(|| Box::new(Marginal::from_filter(&self.filter, &states)));
         for jump in kind.row().jumps {
             next.filter.covariance[jump.state][jump.state] += jump.sd * jump.sd;
         }

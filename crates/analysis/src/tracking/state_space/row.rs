@@ -107,8 +107,7 @@ impl RowMaker {
             field_nt,
         });
         let observation = observation(placed, gyro_deg.or(satellite_deg)?);
-        let phase = sample.time.micros() as f64 / 1e6 / DAY_S
-            + sample.position.lon_deg() / 360.0;
+        let phase = sample.time.micros() as f64 / 1e6 / DAY_S + sample.position.lon_deg() / 360.0;
         let (sin, cos) = (TAU * phase.rem_euclid(1.0)).sin_cos();
         Some(Row {
             time: sample.time,

@@ -1,7 +1,7 @@
 //! Told events as changes in the result of an analysis.
 
-use super::kinds::Kind;
-use super::tracker::Told;
+use crate::tracking::hypotheses::kinds::Kind;
+use crate::tracking::tracker::told::Told;
 use binnacle_compass::result::{Cause, CauseProbability, Change};
 
 /// Returns the change that a told event is.

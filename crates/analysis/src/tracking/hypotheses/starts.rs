@@ -1,11 +1,11 @@
 //! Starting guesses of a ship that nothing is known of.
 
-use super::filter::Filter;
 use super::hypothesis::Hypothesis;
-use super::levels::{Level, Levels};
-use super::row::Row;
-use super::scalar::{Silent, deviation};
-use super::states::{
+use crate::tracking::state_space::filter::Filter;
+use crate::tracking::state_space::levels::{Level, Levels};
+use crate::tracking::state_space::row::Row;
+use crate::tracking::state_space::scalar::{Silent, deviation};
+use crate::tracking::state_space::states::{
     ALIGNMENT, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW, HEEL, LAG, LIST, LIST_NT,
     REFLECTION, RETENTION, SATELLITE, SCHULER, SPEED, STATES, SWING, VARIATION,
 };

@@ -1,6 +1,6 @@
 //! The table of events: how often each kind happens, what it moves, and how it ends.
 
-use super::states::{ALIGNMENT, ANOMALY, BX, BY, GYRO, SATELLITE, SETTLING};
+use crate::tracking::state_space::states::{ALIGNMENT, ANOMALY, BX, BY, GYRO, SATELLITE, SETTLING};
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 
@@ -78,7 +78,13 @@ pub(crate) const KINDS: [KindRow; 13] = [
         kind: Kind::Strike,
         a_year: 0.3,
         a_call: 0.002,
-        jumps: &[jump(BX, 2.0), jump(BY, 2.0), jump(4, 0.1), jump(5, 0.1), jump(6, 0.1)],
+        jumps: &[
+            jump(BX, 2.0),
+            jump(BY, 2.0),
+            jump(4, 0.1),
+            jump(5, 0.1),
+            jump(6, 0.1),
+        ],
         ending: Ending::InPort(0.02),
     },
     KindRow {

@@ -5,11 +5,11 @@
 //! them, nearly: the filter takes up some of it meanwhile. That is enough to propose an event;
 //! it is judged by a filter of its own.
 
-use super::hypothesis::Read;
-use super::kinds::{Jump, KindRow};
-use super::row::Row;
-use super::scalar::{Silent, gyro_share};
-use super::states::{ALIGNMENT, BX, BY, GYRO, SATELLITE, SETTLING};
+use crate::tracking::hypotheses::hypothesis::Read;
+use crate::tracking::hypotheses::kinds::{Jump, KindRow};
+use crate::tracking::state_space::row::Row;
+use crate::tracking::state_space::scalar::{Silent, gyro_share};
+use crate::tracking::state_space::states::{ALIGNMENT, BX, BY, GYRO, SATELLITE, SETTLING};
 use nalgebra::{DMatrix, DVector};
 
 /// States whose jumps are looked for.
@@ -48,7 +48,11 @@ impl EvidenceSums {
         }
     }
 
-    fn add_scalar(&mut self, load: &[f64; SUMS], innovation: super::filter::Innovation) {
+    fn add_scalar(
+        &mut self,
+        load: &[f64; SUMS],
+        innovation: crate::tracking::state_space::filter::Innovation,
+    ) {
         let z_squared = innovation.z_squared();
         let capped = (LARGEST_SD * LARGEST_SD / z_squared).sqrt().min(1.0);
         let weight = 1.0 / innovation.variance;
@@ -125,7 +129,11 @@ impl EvidenceSums {
 
 /// Returns the place of a jump's state among the sums, with its standard deviation.
 fn watched(jump: &Jump) -> Option<(usize, f64)> {
-    let state = if jump.state == SETTLING { GYRO } else { jump.state };
+    let state = if jump.state == SETTLING {
+        GYRO
+    } else {
+        jump.state
+    };
     let place = WATCHED.iter().position(|watched| *watched == state)?;
     Some((place, jump.sd))
 }

@@ -4,9 +4,9 @@ use super::filter::dot;
 use super::levels::{Level, Levels};
 use super::row::Row;
 use super::states::{
-    ALIGNMENT, ANOMALY, BX, BY, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW, HEEL, HEEL_NT_PER_RAD, LAG,
-    LIST, LIST_NT, REFLECTION, RETENTION, SATELLITE, SCHULER, SETTLING, SPEED, STATES, SWING,
-    USUAL_H_NT, VARIATION, parameters,
+    ALIGNMENT, ANOMALY, BX, BY, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW, HEEL,
+    HEEL_NT_PER_RAD, LAG, LIST, LIST_NT, REFLECTION, RETENTION, SATELLITE, SCHULER, SETTLING,
+    SPEED, STATES, SWING, USUAL_H_NT, VARIATION, parameters,
 };
 use crate::estimate::{Direction, Needle, POPULATION_SD};
 use binnacle_compass::angle::wrap_180;
@@ -67,8 +67,7 @@ pub(crate) fn deviation(
     let level = levels.at(Level::White);
     let white = row.white.variance(level * level);
     let share = gyro_share(row, silent);
-    let is_reference_silent =
-        (share > 0.0 && silent.gyro) || (share < 1.0 && silent.satellite);
+    let is_reference_silent = (share > 0.0 && silent.gyro) || (share < 1.0 && silent.satellite);
     let variance = if silent.compass || is_reference_silent {
         SAYS_NOTHING_DEG.powi(2)
     } else {
@@ -212,8 +211,7 @@ impl Ship {
 
     /// Adds the slopes by the ship's states, in degrees.
     fn load(&self, row: &Row, needle: &Needle, load: &mut [f64; STATES]) {
-        let moves = 1.0
-            + (1.0 - REFERENCE_SHARE) * (1.0 - needle.compass_per_magnetic());
+        let moves = 1.0 + (1.0 - REFERENCE_SHARE) * (1.0 - needle.compass_per_magnetic());
         let slope = needle.gradient().map(|g| (g * moves).to_degrees());
         for j in 0..PARAMETERS {
             load[j] = slope[j] * POPULATION_SD[j];

@@ -2,9 +2,7 @@
 
 use super::filter::Filter;
 use super::row::Row;
-use super::states::{
-    ALIGNMENT, BX, BY, HEEL, HEEL_NT_PER_RAD, LIST, LIST_NT, RETENTION, STATES,
-};
+use super::states::{ALIGNMENT, BX, BY, HEEL, HEEL_NT_PER_RAD, LIST, LIST_NT, RETENTION, STATES};
 use crate::estimate::POPULATION_SD;
 use binnacle_compass::model::{Covariance, Parameters};
 use binnacle_compass::ship::PARAMETERS;
@@ -49,8 +47,7 @@ impl ShipState {
             let off: [f64; VALUES] = std::array::from_fn(|i| state.mean[i] - mean[i]);
             for i in 0..VALUES {
                 for j in 0..VALUES {
-                    covariance[i][j] +=
-                        (state.covariance[i][j] + off[i] * off[j]) * weight / total;
+                    covariance[i][j] += (state.covariance[i][j] + off[i] * off[j]) * weight / total;
                 }
             }
         }
@@ -75,7 +72,11 @@ impl ShipState {
         let mean = turned(&self.mean);
         let mut slopes = [[0.0; VALUES]; VALUES];
         for j in 0..VALUES {
-            let step = if j < PARAMETERS { POPULATION_SD[j] } else { STEP_DEG };
+            let step = if j < PARAMETERS {
+                POPULATION_SD[j]
+            } else {
+                STEP_DEG
+            };
             let mut moved = self.mean;
             moved[j] += step;
             let moved = turned(&moved);

@@ -3,7 +3,8 @@
 use super::levels::{Level, Levels};
 use super::row::Row;
 use super::states::{
-    ANOMALY, BX, BY, FRICTION, GYRO_SLOW, LIST, LIST_NT, REFLECTION, SCHULER, SETTLING, STATES, SWING, VARIATION,
+    ANOMALY, BX, BY, FRICTION, GYRO_SLOW, LIST, LIST_NT, REFLECTION, SCHULER, SETTLING, STATES,
+    SWING, VARIATION,
 };
 use crate::estimate::{
     COMPASS_SWING_S, POPULATION_SD, SATELLITE_S, SLOW_GYRO_S, VARIATION_NM, swing_over,
@@ -63,8 +64,16 @@ impl Transition {
         let turned = row.turned_deg.abs();
         t.fade(GYRO_SLOW, seconds / SLOW_GYRO_S, levels.at(Level::GyroSlow));
         t.fade(SWING, seconds / COMPASS_SWING_S, levels.at(Level::Swing));
-        t.fade(VARIATION, row.miles / VARIATION_NM, levels.at(Level::Variation));
-        t.fade(REFLECTION, seconds / SATELLITE_S, levels.at(Level::Reflection));
+        t.fade(
+            VARIATION,
+            row.miles / VARIATION_NM,
+            levels.at(Level::Variation),
+        );
+        t.fade(
+            REFLECTION,
+            seconds / SATELLITE_S,
+            levels.at(Level::Reflection),
+        );
         t.fade(LIST, seconds / LIST_S, levels.at(Level::List) / LIST_NT);
         t.fade(SETTLING, seconds / SETTLING_S, 0.0);
         let friction = if turned > RESEATED_DEG {

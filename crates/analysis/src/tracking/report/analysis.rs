@@ -1,17 +1,18 @@
 //! Whole analysis of a compass by the tracker: samples and logbook to epochs, models and
 //! changes.
 
-use super::kinds::Kind;
-use super::levels::{Level, Levels};
-use super::row::Placed;
-use super::ship_state::ShipState;
 use super::told_changes::change;
-use super::tracker::{Class, Told, Tracked, Tracker};
 use crate::analyse::berth_stays::mark_alongside;
 use crate::analyse::reading::{Reading, readings};
 use crate::estimate::{POPULATION_SD, weight};
-use crate::fit::heading_check::check_headings;
 use crate::fit::Observation;
+use crate::fit::heading_check::check_headings;
+use crate::tracking::hypotheses::kinds::Kind;
+use crate::tracking::state_space::levels::{Level, Levels};
+use crate::tracking::state_space::row::Placed;
+use crate::tracking::state_space::ship_state::ShipState;
+use crate::tracking::tracker::told::{Class, Told};
+use crate::tracking::tracker::tracker::{Tracked, Tracker};
 use binnacle_compass::angle::{Deviation, wrap_180};
 use binnacle_compass::coverage::coverage;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
@@ -220,7 +221,12 @@ impl Voyage {
                 is_return: false,
             });
         }
-        for told in self.tracker.told.iter().filter(|told| told.begins_an_epoch()) {
+        for told in self
+            .tracker
+            .told
+            .iter()
+            .filter(|told| told.begins_an_epoch())
+        {
             boundaries.push(Boundary {
                 at: told.event.from,
                 ship_before: &told.event.ship_before,

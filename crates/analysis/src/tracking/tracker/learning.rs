@@ -1,10 +1,10 @@
 //! Learning of a ship's levels by the slope of the likelihood.
 
-use super::filter::Filter;
-use super::hypothesis::Hypothesis;
-use super::levels::{LEVELS, Level, Levels};
-use super::row::Row;
-use super::transition::Transition;
+use crate::tracking::hypotheses::hypothesis::Hypothesis;
+use crate::tracking::state_space::filter::Filter;
+use crate::tracking::state_space::levels::{LEVELS, Level, Levels};
+use crate::tracking::state_space::row::Row;
+use crate::tracking::state_space::transition::Transition;
 
 /// Change of a level's logarithm by which the slope is taken.
 const NUDGE: f64 = 0.25;

@@ -1,0 +1,173 @@
+//! Events that have become certain, and what is told of them.
+
+use super::tracker::Tracker;
+use crate::tracking::hypotheses::hypothesis::{Event, Hypothesis};
+use crate::tracking::hypotheses::kinds::Kind;
+use binnacle_compass::time::Timestamp;
+
+/// Posterior probability from which an event is told, and seconds within which two accounts
+/// speak of the same event.
+const TOLD: f64 = 0.98;
+const TOLD_SAME_S: f64 = 86_400.0;
+/// Posterior probability below which a told event is withdrawn, and time for which an event
+/// is told anew as more is known.
+const WITHDRAWN: f64 = 0.3;
+const REFRESHED_S: f64 = 20.0 * 86_400.0;
+
+/// What is told about: the ship, a reference, what passes by, or the compass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Class {
+    Ship,
+    Reference,
+    Passing,
+    Compass,
+}
+
+impl Class {
+    fn of(kind: Kind) -> Class {
+        match kind {
+            Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift => Class::Ship,
+            Kind::Storm | Kind::Anomaly => Class::Passing,
+            Kind::StuckCard => Class::Compass,
+            _ => Class::Reference,
+        }
+    }
+}
+
+/// Event that was told.
+#[derive(Clone, Debug)]
+pub(crate) struct Told {
+    pub(crate) class: Class,
+    pub(crate) event: Event,
+    /// Row that made it certain.
+    pub(crate) at: Timestamp,
+    pub(crate) withdrawn: Option<Timestamp>,
+    /// Probability of each kind, the likeliest first.
+    pub(crate) kinds: Vec<(Kind, f64)>,
+    pub(crate) earliest: Timestamp,
+    pub(crate) latest: Timestamp,
+}
+
+/// Marginals of the posterior over events.
+struct Marginals<'a> {
+    bank: &'a [Hypothesis],
+    weights: Vec<f64>,
+}
+
+/// Marginal of one event.
+struct Found {
+    probability: f64,
+    kinds: Vec<(Kind, f64)>,
+    earliest: Timestamp,
+    latest: Timestamp,
+}
+
+impl<'a> Marginals<'a> {
+    fn new(bank: &'a [Hypothesis]) -> Marginals<'a> {
+        let best = bank
+            .iter()
+            .map(Hypothesis::log_weight)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let weights: Vec<f64> = bank.iter().map(|h| (h.log_weight() - best).exp()).collect();
+        let total: f64 = weights.iter().sum();
+        Marginals {
+            bank,
+            weights: weights.into_iter().map(|w| w / total).collect(),
+        }
+    }
+
+    /// Returns the lead's event of a class at about a time.
+    fn leads(&self, class: Class, from: Timestamp) -> Option<&'a Event> {
+        nearest(&self.bank[0], class, from)
+    }
+
+    /// Returns the marginal of an event of a class at about a time.
+    fn event(&self, class: Class, from: Timestamp) -> Found {
+        let mut found = Found {
+            probability: 0.0,
+            kinds: Vec::new(),
+            earliest: from,
+            latest: from,
+        };
+        for (hypothesis, weight) in self.bank.iter().zip(&self.weights) {
+            let Some(event) = nearest(hypothesis, class, from) else {
+                continue;
+            };
+            found.probability += weight;
+            match found.kinds.iter_mut().find(|(kind, _)| *kind == event.kind) {
+                Some((_, sum)) => *sum += weight,
+                None => found.kinds.push((event.kind, *weight)),
+            }
+            if *weight > 0.02 {
+                found.earliest = found.earliest.min(event.from);
+                found.latest = found.latest.max(event.from);
+            }
+        }
+        found.kinds.sort_by(|a, b| b.1.total_cmp(&a.1));
+        found
+    }
+}
+
+/// Returns a hypothesis's event of a class nearest to a time, within a day.
+fn nearest(hypothesis: &Hypothesis, class: Class, from: Timestamp) -> Option<&Event> {
+    let events = hypothesis
+        .events
+        .iter()
+        .filter(|e| Class::of(e.kind) == class);
+    let apart = |e: &Event| e.from.seconds_since(from).abs();
+    let near = events.filter(|e| apart(e) < TOLD_SAME_S);
+    near.min_by(|a, b| apart(a).total_cmp(&apart(b)))
+}
+
+impl Tracker {
+    /// Tells events that have become certain, and withdraws those that no longer are.
+    pub(super) fn tell(&mut self, now: Timestamp) {
+        let marginals = Marginals::new(&self.bank);
+        for told in &mut self.told {
+            let is_open = now.seconds_since(told.event.from) < REFRESHED_S;
+            if told.withdrawn.is_some() || !(is_open || told.event.until.is_none()) {
+                continue;
+            }
+            let found = marginals.event(told.class, told.event.from);
+            if is_open && found.probability < WITHDRAWN {
+                told.withdrawn = Some(now);
+            } else if found.probability > 0.5
+                && let Some(event) = marginals.leads(told.class, told.event.from)
+            {
+                told.event.until = event.until;
+                told.event.ship_at_end = event.ship_at_end.clone();
+                if is_open {
+                    told.event = event.clone();
+                    told.kinds = found.kinds;
+                    told.earliest = found.earliest;
+                    told.latest = found.latest;
+                }
+            }
+        }
+        let mut more = Vec::new();
+        for event in &self.bank[0].events {
+            let class = Class::of(event.kind);
+            let is_told = |told: &Told| {
+                told.class == class
+                    && told.withdrawn.is_none()
+                    && told.event.from.seconds_since(event.from).abs() < TOLD_SAME_S
+            };
+            if self.told.iter().any(is_told) || now.seconds_since(event.from) > REFRESHED_S {
+                continue;
+            }
+            let found = marginals.event(class, event.from);
+            if found.probability > TOLD {
+                more.push(Told {
+                    class,
+                    event: event.clone(),
+                    at: now,
+                    withdrawn: None,
+                    kinds: found.kinds,
+                    earliest: found.earliest,
+                    latest: found.latest,
+                });
+            }
+        }
+        self.told.extend(more);
+    }
+}
