@@ -8,6 +8,7 @@ use crate::tracking::state_space::scalar::{Scalar, Silent, deviation, difference
 use crate::tracking::state_space::ship_state::ShipState;
 use crate::tracking::state_space::states::{ALIGNMENT, BX, BY, GYRO, STATES};
 use crate::tracking::state_space::transition::Transition;
+use binnacle_compass::angle::wrap_180;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 use binnacle_compass::time::Timestamp;
@@ -28,6 +29,8 @@ const REALIGNED_DEG: f64 = 2.0;
 const WILD: f64 = 0.004;
 /// Standard deviation of a row's share of a jump, degrees.
 const AMID_DEG: f64 = 3.0;
+/// Standard deviation of a stuck instrument's readings, degrees.
+const HELD_DEG: f64 = 0.3;
 /// Greatest loss of a row.
 const WORST_LOSS: f64 = 18.0;
 /// Ratio of a prediction's variance to the reading's from which the reading teaches much.
@@ -48,6 +51,8 @@ pub(crate) struct Event {
     pub(crate) ship_at_end: Option<Box<ShipState>>,
     /// True if the ship was in port meanwhile.
     pub(crate) in_port: bool,
+    /// Heading at which an instrument stands, degrees.
+    pub(crate) held_deg: Option<f64>,
 }
 
 /// Circumstances in which an event begins or ends.
@@ -57,6 +62,8 @@ pub(crate) struct Begin {
     pub(crate) time: Timestamp,
     /// Ship until then.
     pub(crate) ship: ShipState,
+    /// Last row before.
+    pub(crate) row: Row,
     /// True if the ship was in port meanwhile.
     pub(crate) in_port: bool,
 }
@@ -175,19 +182,49 @@ impl Hypothesis {
         } else {
             0.0
         };
-        let by_difference = difference(row, &self.filter.mean, levels, silent).map(|mut scalar| {
-            scalar.variance += amid;
-            self.filter.update(&scalar)
-        });
+        let by_difference = difference(row, &self.filter.mean, levels, silent)
+            .filter(|_| !(silent.gyro || silent.satellite))
+            .map(|mut scalar| {
+                scalar.variance += amid;
+                self.filter.update(&scalar)
+            });
         let mut load = deviation(row, &self.filter.mean, levels, silent);
         load.variance += amid;
         let read = Read {
             difference: by_difference,
-            deviation: self.filter.update(&load),
+            deviation: if self.holds(row) {
+                self.filter.innovation(&load)
+            } else {
+                self.filter.update(&load)
+            },
             load,
         };
         self.filter.log_likelihood -= 0.5 * read.loss();
+        self.read_held(row);
         read
+    }
+
+    /// Returns true if an instrument is stuck without which the row shows no deviation.
+    fn holds(&self, row: &Row) -> bool {
+        let is_alone = row.gyro_deg.is_none() || row.satellite_deg.is_none();
+        self.has(Kind::StuckCard)
+            || (is_alone && (self.has(Kind::StuckGyro) || self.has(Kind::StuckSatellite)))
+    }
+
+    /// Reads what stuck instruments show: the same as before.
+    fn read_held(&mut self, row: &Row) {
+        let lasting = self.events.iter().filter(|event| event.until.is_none());
+        let held = lasting.filter_map(|event| {
+            let shown = row.shown_deg(event.kind)?;
+            Some(wrap_180(shown - event.held_deg?))
+        });
+        let losses: f64 = held
+            .map(|value| {
+                let variance = HELD_DEG * HELD_DEG;
+                Innovation { value, variance }.loss() + variance.ln()
+            })
+            .sum();
+        self.filter.log_likelihood -= 0.5 * losses;
     }
 
     /// Counts how improbable it is that its lasting events have lasted as long.
@@ -228,6 +265,7 @@ impl Hypothesis {
             ship_before: Box::new(begin.ship.clone()),
             ship_at_end: None,
             in_port: begin.in_port,
+            held_deg: begin.row.shown_deg(kind),
         });
         next.is_amid = !kind.row().jumps.is_empty();
         next.log_prior += log_prior;

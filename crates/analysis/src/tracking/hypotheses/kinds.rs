@@ -1,6 +1,7 @@
 //! The table of events: how often each kind happens, what it moves, and how it ends.
 
 use crate::tracking::state_space::states::{ALIGNMENT, ANOMALY, BX, BY, GYRO, SATELLITE, SETTLING};
+use crate::tracking::state_space::row::Row;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 
@@ -180,6 +181,18 @@ pub(crate) const KINDS: [KindRow; 13] = [
         ending: Ending::After(DAY_S),
     },
 ];
+
+impl Row {
+    /// Returns the reading of the instrument that is stuck in such an event.
+    pub(crate) fn shown_deg(&self, kind: Kind) -> Option<f64> {
+        match kind {
+            Kind::StuckCard => Some(self.compass_deg),
+            Kind::StuckGyro => self.gyro_deg.map(|deg| deg + self.variation_deg),
+            Kind::StuckSatellite => self.satellite_deg.map(|deg| deg + self.variation_deg),
+            _ => None,
+        }
+    }
+}
 
 impl Kind {
     /// Returns the kind's row of the table.

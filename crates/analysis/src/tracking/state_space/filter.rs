@@ -101,6 +101,14 @@ impl Filter {
         product
     }
 
+    /// Returns what a scalar is off, without reading it.
+    pub(crate) fn innovation(&self, scalar: &Scalar) -> Innovation {
+        Innovation {
+            value: scalar.innovation,
+            variance: scalar.variance + dot(&scalar.load, &self.spread(&scalar.load)),
+        }
+    }
+
     /// Reads a scalar. Its loss is left to the caller, who knows what else the row said.
     pub(crate) fn update(&mut self, scalar: &Scalar) -> Innovation {
         let gain = self.spread(&scalar.load);

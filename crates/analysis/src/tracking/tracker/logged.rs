@@ -17,6 +17,7 @@ impl Tracker {
         let begin = Begin {
             time: row.time,
             ship: self.ship(&row),
+            row: row.clone(),
             in_port: true,
         };
         if kind.ends_an_epoch() {
@@ -49,6 +50,7 @@ impl Tracker {
         let begin = Begin {
             time: row.time,
             ship: self.ship(&row),
+            row: row.clone(),
             in_port: true,
         };
         let mut more = Vec::new();

@@ -9,6 +9,7 @@ use binnacle_compass::time::Timestamp;
 /// speak of the same event.
 const TOLD: f64 = 0.98;
 const TOLD_SAME_S: f64 = 86_400.0;
+const TOLD_LEAST_S: f64 = 1200.0;
 /// Posterior probability below which a told event is withdrawn, and time for which an event
 /// is told anew as more is known.
 const WITHDRAWN: f64 = 0.3;
@@ -76,9 +77,23 @@ impl<'a> Marginals<'a> {
         }
     }
 
+    /// Returns the seconds within which accounts speak of the same event: half of those to the
+    /// lead's next of its class, a day at most.
+    fn window_s(&self, class: Class, from: Timestamp) -> f64 {
+        let events = self.bank[0].events.iter();
+        let apart = events
+            .filter(|event| Class::of(event.kind) == class)
+            .map(|event| event.from.seconds_since(from).abs());
+        // The nearest is the event itself.
+        let mut apart: Vec<f64> = apart.collect();
+        apart.sort_by(f64::total_cmp);
+        let next = apart.get(1).map_or(TOLD_SAME_S, |next| next / 2.0);
+        next.clamp(TOLD_LEAST_S, TOLD_SAME_S)
+    }
+
     /// Returns the lead's event of a class at about a time.
     fn leads(&self, class: Class, from: Timestamp) -> Option<&'a Event> {
-        nearest(&self.bank[0], class, from)
+        nearest(&self.bank[0], class, from, self.window_s(class, from))
     }
 
     /// Returns the marginal of an event of a class at about a time.
@@ -89,8 +104,9 @@ impl<'a> Marginals<'a> {
             earliest: from,
             latest: from,
         };
+        let within_s = self.window_s(class, from);
         for (hypothesis, weight) in self.bank.iter().zip(&self.weights) {
-            let Some(event) = nearest(hypothesis, class, from) else {
+            let Some(event) = nearest(hypothesis, class, from, within_s) else {
                 continue;
             };
             found.probability += weight;
@@ -108,14 +124,19 @@ impl<'a> Marginals<'a> {
     }
 }
 
-/// Returns a hypothesis's event of a class nearest to a time, within a day.
-fn nearest(hypothesis: &Hypothesis, class: Class, from: Timestamp) -> Option<&Event> {
+/// Returns a hypothesis's event of a class nearest to a time, within some seconds.
+fn nearest(
+    hypothesis: &Hypothesis,
+    class: Class,
+    from: Timestamp,
+    within_s: f64,
+) -> Option<&Event> {
     let events = hypothesis
         .events
         .iter()
         .filter(|e| Class::of(e.kind) == class);
     let apart = |e: &Event| e.from.seconds_since(from).abs();
-    let near = events.filter(|e| apart(e) < TOLD_SAME_S);
+    let near = events.filter(|e| apart(e) <= within_s);
     near.min_by(|a, b| apart(a).total_cmp(&apart(b)))
 }
 
@@ -150,7 +171,8 @@ impl Tracker {
             let is_told = |told: &Told| {
                 told.class == class
                     && told.withdrawn.is_none()
-                    && told.event.from.seconds_since(event.from).abs() < TOLD_SAME_S
+                    && told.event.from.seconds_since(event.from).abs()
+                        <= marginals.window_s(class, event.from)
             };
             if self.told.iter().any(is_told) || now.seconds_since(event.from) > REFRESHED_S {
                 continue;

@@ -123,6 +123,7 @@ impl Tracker {
         Begin {
             time: last.time,
             ship: recent.map_or_else(|| self.ship(last), |recent| recent.begin.ship.clone()),
+            row: last.clone(),
             in_port: row.after_port,
         }
     }
