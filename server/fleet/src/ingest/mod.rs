@@ -14,7 +14,9 @@ mod downlink;
 mod short_burst;
 mod store;
 
-pub use short_burst::{ImportResult, IncompleteBatch, RefusedMessage, import_messages};
+pub use short_burst::{
+    Acknowledgement, ImportResult, IncompleteBatch, RefusedMessage, ShortBurst, import_messages,
+};
 
 use crate::agent_auth::Agent;
 use crate::enrolment;
