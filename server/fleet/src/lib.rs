@@ -9,6 +9,8 @@
     reason = "counts go into BIGINT and are far from its end"
 )]
 
+pub mod event_kinds;
+
 pub mod binnacles;
 pub mod compasses;
 pub mod operators;

@@ -3,12 +3,13 @@
 use super::entry::{AuthorKind, CheckedFilter, LogbookEntry, NewEntry, Revision};
 use crate::agent_auth::Agent;
 use crate::analysis_queue;
+use crate::event_kinds;
 use anyhow::Context;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::db::{Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::events::{self, Kind};
+use binnacle_platform::events;
 use binnacle_platform::http::Page;
 use binnacle_platform::ids::{CompassId, EntryId, UserId, VesselId};
 use binnacle_platform::session;
@@ -97,7 +98,8 @@ impl<'a> Change<'a> {
     /// Commits the change, enqueues an analysis of the vessel, and notifies dashboards.
     pub(super) async fn commit(mut self) -> Result<()> {
         analysis_queue::enqueue(&mut self.tx, self.vessel, self.now, 0.0).await?;
-        let event = events::insert(&mut self.tx, self.vessel, Kind::Logbook, self.now).await?;
+        let event =
+            events::insert(&mut self.tx, self.vessel, event_kinds::LOGBOOK, self.now).await?;
         self.tx.commit().await?;
         self.app.publish(event);
         self.app.work.notify_one();
