@@ -9,7 +9,9 @@
 
 use super::stats::InputStats;
 use crate::instruments::{Observation, Reading};
-use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::angle::{
+    CompassHeading, CourseOverGround, Deviation, MagneticHeading, TrueHeading, Variation,
+};
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 use serde::Deserialize;
@@ -19,7 +21,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Paths to subscribe to.
-pub(super) const PATHS: [&str; 10] = [
+pub(super) const PATHS: [&str; 12] = [
     "navigation.headingCompass",
     "navigation.headingMagnetic",
     "navigation.headingTrue",
@@ -29,6 +31,8 @@ pub(super) const PATHS: [&str; 10] = [
     "navigation.attitude",
     "navigation.position",
     "navigation.speedOverGround",
+    "navigation.courseOverGroundTrue",
+    "environment.outside.temperature",
     "navigation.datetime",
 ];
 
@@ -36,6 +40,9 @@ const TALKER: [u8; 2] = *b"SK";
 const KNOTS_A_METRE_PER_SECOND: f64 = 3600.0 / 1852.0;
 /// Highest plausible speed.
 const MAX_SPEED_M_S: f64 = 100.0;
+const KELVIN_AT_ZERO_CELSIUS: f64 = 273.15;
+/// Furthest plausible temperature from freezing.
+const MAX_TEMPERATURE_C: f64 = 100.0;
 /// Highest plausible rate of turn.
 const MAX_TURN_RAD_S: f64 = PI;
 /// Rounding tolerance: four decimals of a full circle may exceed it.
@@ -245,6 +252,17 @@ fn read_standalone(
             let sog_kn = speed_m_s * KNOTS_A_METRE_PER_SECOND;
             push(b"VTG", Reading::Speed { sog_kn });
         }
+        "navigation.courseOverGroundTrue" => {
+            let course = direction_deg(value)?.and_then(CourseOverGround::new);
+            push(b"VTG", Reading::Course(course.ok_or(InvalidValue)?));
+        }
+        "environment.outside.temperature" => {
+            let celsius = number(value)? - KELVIN_AT_ZERO_CELSIUS;
+            if celsius.abs() > MAX_TEMPERATURE_C {
+                return Err(InvalidValue);
+            }
+            push(b"MTA", Reading::Temperature { celsius });
+        }
         _ => {
             let text = value.as_str().ok_or(InvalidValue)?;
             let at = Timestamp::parse(text).map_err(|_| InvalidValue)?;
@@ -388,6 +406,14 @@ mod tests {
         );
         let speed = one("navigation.speedOverGround", &json!(5.144_444_444));
         assert!(matches!(speed[..], [Reading::Speed { sog_kn }] if (sog_kn - 10.0).abs() < 1e-6));
+        let course = one("navigation.courseOverGroundTrue", &json!(1.5));
+        assert!(
+            matches!(course[..], [Reading::Course(course)] if (course.radians() - 1.5).abs() < 1e-9)
+        );
+        let air = one("environment.outside.temperature", &json!(283.15));
+        assert!(
+            matches!(air[..], [Reading::Temperature { celsius }] if (celsius - 10.0).abs() < 1e-9)
+        );
         let attitude = one(
             "navigation.attitude",
             &json!({"roll": -0.1, "pitch": 0.05, "yaw": 1}),

@@ -7,8 +7,9 @@
 use super::gnss_clock::{GnssClock, Step};
 use super::observation::{AGENT_TALKER, Observation, Reading};
 use crate::config::{RolesConfig, SourceConfig};
-use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
 use binnacle_compass::position::Position;
+use binnacle_compass::sample::SourceId;
 use binnacle_compass::time::Timestamp;
 use std::sync::Arc;
 
@@ -22,21 +23,32 @@ pub(crate) enum Signal {
     /// Raw compass.
     Compass(CompassHeading),
     /// Gyro.
-    Gyro(TrueHeading),
+    Gyro(ReferenceHeading),
     /// Gyro reports itself invalid.
     GyroInvalid,
     /// Satellite compass.
-    Satellite(TrueHeading),
+    Satellite(ReferenceHeading),
     /// Satellite compass reports itself invalid.
     SatelliteInvalid,
     /// Fix.
     Position(Position),
     /// Speed over ground, knots.
     Speed(f64),
+    /// Course over ground.
+    Course(CourseOverGround),
     /// Degrees per minute, starboard positive.
     RateOfTurn(f64),
     /// Degrees, starboard down positive.
     Roll(f64),
+    /// Degrees Celsius.
+    Temperature(f64),
+}
+
+/// Heading of a reference, and the source that gave it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ReferenceHeading {
+    pub(crate) heading: TrueHeading,
+    pub(crate) source: SourceId,
 }
 
 /// The vessel's instruments and its clock.
@@ -48,6 +60,7 @@ pub(crate) struct Roles {
     position: Role,
     rate_of_turn: Role,
     roll: Role,
+    temperature: Role,
     clock: GnssClock,
 }
 
@@ -62,6 +75,7 @@ impl Roles {
             position: role(&config.position),
             rate_of_turn: role(&config.rate_of_turn),
             roll: role(&config.roll),
+            temperature: role(&config.temperature),
             // A recording's own time stamps rank behind every receiver.
             clock: GnssClock::new(config.position.len() + 1, stale_s),
         }
@@ -100,19 +114,20 @@ impl Roles {
             Reading::Compass { raw, .. } => single(
                 self.compass
                     .note_reading(seen, now)
-                    .then_some(Signal::Compass(raw)),
+                    .map(|_| Signal::Compass(raw)),
             ),
             Reading::Magnetic(heading) => {
-                let used = self.compass.note_reading(seen, now);
+                let used = self.compass.note_reading(seen, now).is_some();
                 let raw = CompassHeading::new(heading.degrees());
                 single(raw.filter(|_| used).map(Signal::Compass))
             }
             Reading::True(heading) => {
-                if self.gyro.note_reading(seen, now) {
-                    return single(Some(Signal::Gyro(heading)));
+                let reference = |source| ReferenceHeading { heading, source };
+                if let Some(source) = self.gyro.note_reading(seen, now) {
+                    return single(Some(Signal::Gyro(reference(source))));
                 }
-                let used = self.satellite.note_reading(seen, now);
-                single(used.then_some(Signal::Satellite(heading)))
+                let source = self.satellite.note_reading(seen, now);
+                single(source.map(|source| Signal::Satellite(reference(source))))
             }
             Reading::TrueNotValid => {
                 if self.gyro.note_invalid(seen, now) {
@@ -130,22 +145,34 @@ impl Roles {
                 let rank = self.position.device_rank(seen);
                 single(rank.and_then(|rank| self.set_clock(rank, stamp)))
             }
-            Reading::Speed { sog_kn } => {
-                let rank = self.position.device_rank(seen);
-                let used = rank.is_some_and(|rank| self.position.is_best(rank, now));
-                single(used.then_some(Signal::Speed(sog_kn)))
-            }
+            Reading::Speed { sog_kn } => single(
+                self.is_from_receiver(seen, now)
+                    .then_some(Signal::Speed(sog_kn)),
+            ),
+            Reading::Course(course) => single(
+                self.is_from_receiver(seen, now)
+                    .then_some(Signal::Course(course)),
+            ),
             Reading::RateOfTurn { deg_min } => {
                 let used = self.rate_of_turn.note_reading(seen, now);
-                single(used.then_some(Signal::RateOfTurn(deg_min)))
+                single(used.map(|_| Signal::RateOfTurn(deg_min)))
             }
-            Reading::Roll { deg } => single(
-                self.roll
+            Reading::Roll { deg } => {
+                single(self.roll.note_reading(seen, now).map(|_| Signal::Roll(deg)))
+            }
+            Reading::Temperature { celsius } => single(
+                self.temperature
                     .note_reading(seen, now)
-                    .then_some(Signal::Roll(deg)),
+                    .map(|_| Signal::Temperature(celsius)),
             ),
             Reading::Pitch { .. } => single(None),
         }
+    }
+
+    /// Returns whether a reading comes from the receiver whose position is used.
+    fn is_from_receiver(&self, seen: &Observation, now: Option<Timestamp>) -> bool {
+        let rank = self.position.device_rank(seen);
+        rank.is_some_and(|rank| self.position.is_best(rank, now))
     }
 
     fn fix(
@@ -160,7 +187,8 @@ impl Roles {
         };
         // Time first: the fix belongs to the time it carries.
         let time = time.and_then(|stamp| self.set_clock(rank, stamp));
-        if !self.position.note_reading(seen, self.clock.now()) {
+        let used = self.position.note_reading(seen, self.clock.now());
+        if used.is_none() {
             return single(time);
         }
         [
@@ -194,6 +222,7 @@ struct Role {
 struct Source {
     input: Option<Arc<str>>,
     config: SourceConfig,
+    id: SourceId,
     heard: Heard,
 }
 
@@ -213,6 +242,7 @@ impl Role {
                 .as_ref()
                 .map(|name| name.get_ref().as_str().into()),
             config: config.clone(),
+            id: SourceId::from_name(&config.name()),
             heard: Heard::Never,
         });
         Role {
@@ -221,13 +251,11 @@ impl Role {
         }
     }
 
-    /// Records a reading of a source. Returns whether the source is in use.
-    fn note_reading(&mut self, seen: &Observation, now: Option<Timestamp>) -> bool {
-        let Some(rank) = self.rank(seen) else {
-            return false;
-        };
+    /// Records a reading of a source. Returns the source's identity if it is in use.
+    fn note_reading(&mut self, seen: &Observation, now: Option<Timestamp>) -> Option<SourceId> {
+        let rank = self.rank(seen)?;
         self.sources[rank].heard = now.map_or(Heard::Timeless, Heard::At);
-        self.is_best(rank, now)
+        self.is_best(rank, now).then_some(self.sources[rank].id)
     }
 
     /// Records that a source is invalid. Returns whether it was in use.
@@ -323,6 +351,13 @@ mod tests {
         }
     }
 
+    fn reference(degrees: f64, source: &str) -> ReferenceHeading {
+        ReferenceHeading {
+            heading: TrueHeading::new(degrees).unwrap(),
+            source: SourceId::from_name(source),
+        }
+    }
+
     fn heading(degrees: f64) -> Reading {
         Reading::True(TrueHeading::new(degrees).unwrap())
     }
@@ -356,13 +391,13 @@ position = [{ input = "a", talker = "GP", sentence = "RMC" }]
             seen("a", "HETHS", heading(10.0)),
             seen("b", "HEHDT", heading(11.0)),
         );
-        let gyro = |degrees| Some(Gyro(TrueHeading::new(degrees).unwrap()));
+        let gyro = |degrees, source| Some(Gyro(reference(degrees, source)));
         roles.observe(&seen("a", "GPRMC", fix(0)));
-        assert_eq!(first(&mut roles, &main), gyro(10.0));
+        assert_eq!(first(&mut roles, &main), gyro(10.0, "a HE THS"));
         assert_eq!(first(&mut roles, &spare), None);
         roles.observe(&seen("a", "GPRMC", fix(16)));
-        assert_eq!(first(&mut roles, &spare), gyro(11.0));
-        assert_eq!(first(&mut roles, &main), gyro(10.0));
+        assert_eq!(first(&mut roles, &spare), gyro(11.0, "b HDT"));
+        assert_eq!(first(&mut roles, &main), gyro(10.0, "a HE THS"));
         assert_eq!(first(&mut roles, &spare), None);
     }
 
@@ -372,7 +407,7 @@ position = [{ input = "a", talker = "GP", sentence = "RMC" }]
         let valid = seen("a", "GPTHS", heading(10.0));
         assert_eq!(
             first(&mut roles, &valid),
-            Some(Satellite(TrueHeading::new(10.0).unwrap()))
+            Some(Satellite(reference(10.0, "a GP")))
         );
         let lost = seen("a", "GPTHS", Reading::TrueNotValid);
         assert_eq!(first(&mut roles, &lost), Some(SatelliteInvalid));
@@ -400,6 +435,31 @@ position = [{ input = "a", talker = "GP", sentence = "RMC" }]
             first(&mut roles, &seen("b", "GPZDA", Reading::Time(at(1)))),
             None
         );
+    }
+
+    #[test]
+    fn a_course_comes_from_the_receiver_whose_position_is_used() {
+        let mut roles = roles(TWO_GYROS);
+        let course = CourseOverGround::new(91.0).unwrap();
+        roles.observe(&seen("a", "GPRMC", fix(0)));
+        let of = |input, id| seen(input, id, Reading::Course(course));
+        assert_eq!(
+            first(&mut roles, &of("a", "GPVTG")),
+            Some(Signal::Course(course))
+        );
+        assert_eq!(first(&mut roles, &of("b", "GPVTG")), None);
+    }
+
+    #[test]
+    fn a_temperature_comes_from_its_role_alone() {
+        let warm = |id| seen("a", id, Reading::Temperature { celsius: 21.5 });
+        assert_eq!(first(&mut roles(TWO_GYROS), &warm("WIMTA")), None);
+        let mut roles = roles(r#"temperature = [{ input = "a", sentence = "MTA" }]"#);
+        assert_eq!(
+            first(&mut roles, &warm("WIMTA")),
+            Some(Signal::Temperature(21.5))
+        );
+        assert_eq!(first(&mut roles, &warm("WIXDR")), None);
     }
 
     #[test]
