@@ -9,4 +9,6 @@ mod roles;
 pub(crate) use clock_checkpoint::ClockCheckpoint;
 pub(crate) use observation::{AGENT_TALKER, Observation, RECORDED_TIME, Reading, is_recorded_time};
 pub(crate) use readings::{Latest, Readings};
-pub(crate) use roles::{ReferenceHeading, Roles, Signal};
+#[cfg(test)]
+pub(crate) use roles::ReferenceHeading;
+pub(crate) use roles::{Roles, Signal};

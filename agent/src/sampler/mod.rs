@@ -19,6 +19,7 @@ mod outcome;
 mod sample_builder;
 mod track;
 
+#[cfg(test)]
 pub(crate) use details::Details;
 pub(crate) use exclusion::Exclusion;
 pub(crate) use outcome::{Outcome, Tally};

@@ -152,9 +152,9 @@ fn motion_within_half_a_step(sent: &Sample, decoded: &Sample) -> bool {
         (sent, decoded) => sent.is_none() && decoded.is_none(),
     };
     course
-        && close(sent.roll_deg, decoded.roll_deg, 0.25)
+        && close(sent.roll_deg, decoded.roll_deg, 0.1)
         && close(sent.roll_spread_deg, decoded.roll_spread_deg, 0.25)
-        && close(sent.temperature_c, decoded.temperature_c, 1.0)
+        && close(sent.temperature_c, decoded.temperature_c, 0.5)
         && (sent.gyro_source, sent.satellite_source)
             == (decoded.gyro_source, decoded.satellite_source)
 }

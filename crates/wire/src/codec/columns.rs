@@ -50,10 +50,11 @@ const SOG_STEP: Step = Step::new(2, 1);
 const RATE_OF_TURN_STEP: Step = Step::new(5, 1);
 const SPREAD_STEP: Step = Step::new(2, 2);
 const WINDOWS_STEP: Step = Step::new(1, 0);
+/// Well below what currents and wind change from sample to sample.
 const COURSE_STEP: Step = Step::new(1, 0);
-const ROLL_STEP: Step = Step::new(5, 1);
+const ROLL_STEP: Step = Step::new(2, 1);
 const ROLL_SPREAD_STEP: Step = Step::new(5, 1);
-const TEMPERATURE_STEP: Step = Step::new(2, 0);
+const TEMPERATURE_STEP: Step = Step::new(1, 0);
 const SOURCE_STEP: Step = Step::new(1, 0);
 
 /// Seconds since 1970 at 1980-01-06, when GPS time begins, and at 2100-01-01.
