@@ -4,6 +4,7 @@ mod clock_checkpoint;
 mod gnss_clock;
 mod observation;
 mod readings;
+mod role;
 mod roles;
 
 pub(crate) use clock_checkpoint::ClockCheckpoint;

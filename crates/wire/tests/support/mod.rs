@@ -87,7 +87,7 @@ pub(crate) fn voyage(seed: u64, count: usize) -> Vec<Sample> {
     samples
 }
 
-/// The same voyage with the drift of a current and of the wind, the roll of a ship in
+/// Returns a [`voyage`] with the drift of a current and of the wind, the roll of a ship in
 /// changing weather, a list, and the day's temperatures.
 pub(crate) fn voyage_with_motion(seed: u64, count: usize) -> Vec<Sample> {
     let mut dice = Dice(seed.wrapping_mul(7_919) + 1);
