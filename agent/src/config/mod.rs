@@ -155,7 +155,6 @@ satellite= [{ input = "bridge", talker = "GP", sentence = "THS" }]
 position = [{ input = "bridge", talker = "GP", sentence = "RMC" }]
 rate_of_turn = [{ input = "bridge", sentence = "ROT" }]
 roll     = [{ input = "bridge", sentence = "XDR" }]
-temperature = [{ input = "bridge", sentence = "MTA" }, { input = "bridge", sentence = "XDR" }]
 [output]
 tcp_server = "127.0.0.1:10111"
 interval_s = 1
