@@ -141,7 +141,7 @@ async fn a_wrong_configuration_is_one_line_and_exit_code_2() {
         let done = agent.call(arguments).await;
         let said = text(&done.stderr);
         assert_eq!(done.status.code(), Some(2), "{said}");
-        assert!(said.contains("agent.toml:19: stale_s: "), "{said}");
+        assert!(said.contains("agent.toml:21: stale_s: "), "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
     }
 }
@@ -251,7 +251,7 @@ async fn what_was_said_in_each_second_can_be_exported_and_bad_questions_are_refu
     assert_eq!(table.lines().count(), 1 + 10, "{table}");
     assert_eq!(
         table.lines().nth(1),
-        Some("2026-09-01T00:06:30Z,43.5000000,-3.0000000,42.00,45.00,,12.00,0.0,")
+        Some("2026-09-01T00:06:30Z,43.5000000,-3.0000000,42.00,45.00,,12.00,0.0,-2.10")
     );
     let wrong = agent.call(&["export", "--from", "yesterday"]).await;
     assert_eq!(wrong.status.code(), Some(2));
