@@ -211,7 +211,9 @@ fn mean_course(windows: &[Window]) -> Option<CourseOverGround> {
         return None;
     }
     let mut mean = DirectionMean::default();
-    courses.into_iter().for_each(|course| mean.add(course));
+    for course in courses {
+        mean.add(course);
+    }
     mean.mean()
 }
 
