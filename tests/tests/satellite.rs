@@ -26,7 +26,7 @@ const FOUR_TIMES_A_DAY: Policy = Policy {
 const DAILY: Policy = Policy {
     profile: "metered",
     seal_s: 24 * 3600,
-    bytes_a_day: 2_700.0,
+    bytes_a_day: 2_800.0,
 };
 const HOURLY: Policy = Policy {
     profile: "vsat",
