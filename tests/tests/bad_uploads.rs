@@ -50,15 +50,15 @@ fn samples(count: usize) -> Vec<Sample> {
     let start = Timestamp::parse("2026-11-20T00:00:05Z").unwrap();
     (0..count)
         .map(|i| Sample {
-            time: start.plus_seconds(600.0 * i as f64),
-            position: Position::new(48.0, -6.0).unwrap(),
-            compass: CompassHeading::new(31.0 * i as f64).unwrap(),
             gyro: TrueHeading::new(31.0 * i as f64 - 3.0),
-            satellite: None,
             sog_kn: Some(12.0),
-            rate_of_turn_deg_min: None,
             spread_deg: Some(0.3),
             windows: 60,
+            ..Sample::new(
+                start.plus_seconds(600.0 * i as f64),
+                Position::new(48.0, -6.0).unwrap(),
+                CompassHeading::new(31.0 * i as f64).unwrap(),
+            )
         })
         .collect()
 }

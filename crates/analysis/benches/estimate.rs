@@ -79,14 +79,12 @@ fn sample(o: &Observation) -> Sample {
         .zip(apart)
         .map_or(reference, |(s, apart)| s + apart);
     Sample {
-        time: o.time.unwrap(),
-        position: o.position.unwrap(),
-        compass: o.compass,
         gyro: TrueHeading::new(gyro),
         satellite: satellite.and_then(TrueHeading::new),
         sog_kn: o.sog_kn,
         rate_of_turn_deg_min: Some(0.0),
         spread_deg: Some(0.3),
         windows: o.windows,
+        ..Sample::new(o.time.unwrap(), o.position.unwrap(), o.compass)
     }
 }

@@ -61,12 +61,12 @@ macro_rules! heading {
                 degrees.is_finite().then(|| Self(wrap_360(degrees)))
             }
 
-            /// The heading in degrees, in [0°, 360°).
+            /// The direction in degrees, in [0°, 360°).
             pub fn degrees(self) -> f64 {
                 self.0
             }
 
-            /// The heading in radians, in [0, 2π).
+            /// The direction in radians, in [0, 2π).
             pub fn radians(self) -> f64 {
                 self.0.to_radians()
             }
@@ -116,6 +116,11 @@ heading!(
 heading!(
     TrueHeading,
     "Heading from true north: magnetic heading with variation applied."
+);
+
+heading!(
+    CourseOverGround,
+    "Direction in which the ship moves over the ground, from true north: never a heading."
 );
 
 macro_rules! difference {

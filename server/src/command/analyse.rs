@@ -4,7 +4,7 @@ use super::{BadInput, input, json, logbook, print_result};
 use crate::cli::Analyse;
 use binnacle_analysis::advice::sail_next;
 use binnacle_analysis::analyse::analyse as run;
-use binnacle_analysis::fit::{CsvRow, readings_from_csv};
+use binnacle_analysis::fit::{CsvRow, Motion, readings_from_csv};
 use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::position::Position;
@@ -37,7 +37,9 @@ fn find(arguments: &Analyse) -> Result<String, BadInput> {
         .map_err(|error| table.error_at(&error))?;
     let mut samples = Vec::with_capacity(table.rows.len());
     for (index, row) in table.rows.iter().enumerate() {
-        samples.push(sample(row).map_err(|(column, what)| table.invalid(index, column, what))?);
+        let sample = sample(row).map_err(|(column, what)| table.invalid(index, column, what))?;
+        let motion = Motion::from_row(row, index).map_err(|error| table.error_at(&error))?;
+        samples.push(motion.put_into(sample));
     }
     let logbook: Vec<LogbookEntry> = match &arguments.logbook {
         Some(path) => logbook::read(path)?,
@@ -66,17 +68,17 @@ fn sample(row: &CsvRow) -> Result<Sample, (&'static str, String)> {
         Some(found) => ("satellite_deg", Some(found)),
         None => ("reference_deg", row.reference_deg),
     };
+    let time = row.time.ok_or_else(empty("time"))?;
+    let position = Position::new(lat, lon).map_err(|error| ("lon", error.to_string()))?;
+    let compass = CompassHeading::try_from(compass_deg)
+        .map_err(|error| ("compass_deg", error.to_string()))?;
     Ok(Sample {
-        time: row.time.ok_or_else(empty("time"))?,
-        position: Position::new(lat, lon).map_err(|error| ("lon", error.to_string()))?,
-        compass: CompassHeading::try_from(compass_deg)
-            .map_err(|error| ("compass_deg", error.to_string()))?,
         gyro: heading("gyro_deg", row.gyro_deg)?,
         satellite: heading(satellite, satellite_deg)?,
         sog_kn: row.sog_kn,
-        rate_of_turn_deg_min: None,
         spread_deg: row.spread_deg,
         windows: row.windows.unwrap_or(60.0).clamp(1.0, 65_535.0) as u16,
+        ..Sample::new(time, position, compass)
     })
 }
 

@@ -175,15 +175,11 @@ fn sample_of(ship: &Model, position: Position, time: Timestamp, heading_deg: f64
         .compass_for_true(heading, earth.declination(), earth.for_ship())
         .unwrap();
     Sample {
-        time,
-        position,
-        compass,
         gyro: Some(heading),
-        satellite: None,
         sog_kn: Some(12.0),
-        rate_of_turn_deg_min: None,
         spread_deg: Some(0.3),
         windows: 60,
+        ..Sample::new(time, position, compass)
     }
 }
 

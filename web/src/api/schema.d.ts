@@ -7883,6 +7883,11 @@ export interface components {
         Sample: {
             /**
              * Format: double
+             * @description Mean course over ground.
+             */
+            cog_deg?: number | null;
+            /**
+             * Format: double
              * @description Mean raw compass heading.
              */
             compass_deg: number;
@@ -7896,6 +7901,11 @@ export interface components {
              * @description Mean gyro heading, as the gyro gave it.
              */
             gyro_deg: number | null;
+            /**
+             * Format: int32
+             * @description Instrument that gave the gyro heading.
+             */
+            gyro_source?: number | null;
             /**
              * Format: double
              * @description Horizontal field, nT.
@@ -7929,9 +7939,24 @@ export interface components {
             residual_deg: number | null;
             /**
              * Format: double
+             * @description Mean roll in degrees, starboard side down positive.
+             */
+            roll_deg?: number | null;
+            /**
+             * Format: double
+             * @description Standard deviation of roll in degrees.
+             */
+            roll_spread_deg?: number | null;
+            /**
+             * Format: double
              * @description Mean satellite-compass heading.
              */
             satellite_deg: number | null;
+            /**
+             * Format: int32
+             * @description Instrument that gave the satellite-compass heading.
+             */
+            satellite_source?: number | null;
             /**
              * Format: double
              * @description Speed over ground in knots.
@@ -7942,6 +7967,11 @@ export interface components {
              * @description Standard deviation, in degrees, of compass less reference among the windows.
              */
             spread_deg: number | null;
+            /**
+             * Format: double
+             * @description Mean temperature at the compass or around it, in degrees Celsius.
+             */
+            temperature_c?: number | null;
             /** @description The middle of the stretch, UTC. */
             time: components["schemas"]["Time"];
             /** @description Used: it had weight in a model. */

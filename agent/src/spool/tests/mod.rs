@@ -17,16 +17,15 @@ use tempfile::TempDir;
 use uuid::Uuid;
 
 pub(crate) fn sample(minute: i64) -> Sample {
+    let time = Timestamp::from_micros((1_700_000_000 + minute * 60) * 1_000_000).unwrap();
+    let position = Position::new(43.0, -3.0).unwrap();
     Sample {
-        time: Timestamp::from_micros((1_700_000_000 + minute * 60) * 1_000_000).unwrap(),
-        position: Position::new(43.0, -3.0).unwrap(),
-        compass: CompassHeading::new(100.0).unwrap(),
         gyro: TrueHeading::new(98.0),
-        satellite: None,
         sog_kn: Some(12.0),
         rate_of_turn_deg_min: Some(0.0),
         spread_deg: Some(0.1),
         windows: 60,
+        ..Sample::new(time, position, CompassHeading::new(100.0).unwrap())
     }
 }
 

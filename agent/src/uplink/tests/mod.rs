@@ -279,15 +279,16 @@ fn other_settings() -> Settings {
 
 async fn seal(spool: &Spool, number: i64) {
     let sample = Sample {
-        time: time().plus_seconds(number as f64 * 600.0),
-        position: Position::new(43.0, -3.0).unwrap(),
-        compass: CompassHeading::new(100.0).unwrap(),
         gyro: TrueHeading::new(98.0),
-        satellite: None,
         sog_kn: Some(12.0),
         rate_of_turn_deg_min: Some(0.0),
         spread_deg: Some(0.1),
         windows: 60,
+        ..Sample::new(
+            time().plus_seconds(number as f64 * 600.0),
+            Position::new(43.0, -3.0).unwrap(),
+            CompassHeading::new(100.0).unwrap(),
+        )
     };
     spool
         .store(&[sample], &BTreeMap::new(), Seal::All)

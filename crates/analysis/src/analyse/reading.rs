@@ -3,11 +3,11 @@
 use super::logbook_rules::{exclusion_by_entry, exclusion_by_kind};
 use crate::fit::HeadingReading;
 use crate::gyro_speed_error::gyro_speed_error_deg;
-use binnacle_compass::angle::{TrueHeading, Variation};
+use binnacle_compass::angle::{CourseOverGround, TrueHeading, Variation};
 use binnacle_compass::field::{FieldAt, FieldModel};
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{LastPlace, SampleDiagnostic, SampleReason};
-use binnacle_compass::sample::Sample;
+use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_compass::settings::{AnalysisSettings, GyroSpeedError};
 use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
 use binnacle_compass::time::Timestamp;
@@ -173,6 +173,7 @@ fn in_order(a: &Sample, b: &Sample) -> Ordering {
     let numbers = |s: &Sample| {
         // A missing value sorts first.
         let or_first = |x: Option<f64>| x.unwrap_or(f64::NEG_INFINITY);
+        let number = |source: SourceId| f64::from(source.number());
         [
             s.position.lat_deg(),
             s.position.lon_deg(),
@@ -183,6 +184,12 @@ fn in_order(a: &Sample, b: &Sample) -> Ordering {
             or_first(s.rate_of_turn_deg_min),
             or_first(s.spread_deg),
             f64::from(s.windows),
+            or_first(s.cog.map(CourseOverGround::degrees)),
+            or_first(s.roll_deg),
+            or_first(s.roll_spread_deg),
+            or_first(s.temperature_c),
+            or_first(s.gyro_source.map(number)),
+            or_first(s.satellite_source.map(number)),
         ]
     };
     let by_number = || {

@@ -6,13 +6,13 @@ mod logbook;
 mod references;
 
 use binnacle_analysis::analyse::analyse;
-use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::logbook::{Cargo, LogbookEntry, LogbookKind};
 use binnacle_compass::model::Parameters;
 use binnacle_compass::position::Position;
 use binnacle_compass::result::{Analysis, FitError, SampleReason};
-use binnacle_compass::sample::Sample;
+use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_compass::settings::AnalysisSettings;
 use binnacle_compass::time::Timestamp;
 
@@ -38,16 +38,14 @@ fn sample(minutes: i64, lat: f64, magnetic_deg: f64) -> Sample {
     let earth = field(FieldModel::Igrf14, position, 0.0, time(minutes)).unwrap();
     let needle = SHIP.linearised_at_magnetic(magnetic_deg.to_radians(), earth.for_ship());
     let compass = magnetic_deg - needle.deviation_rad.to_degrees();
+    let compass = CompassHeading::new(compass).unwrap();
     Sample {
-        time: time(minutes),
-        position,
-        compass: CompassHeading::new(compass).unwrap(),
         gyro: TrueHeading::new(magnetic_deg + earth.declination().degrees_east()),
-        satellite: None,
         sog_kn: Some(14.0),
         rate_of_turn_deg_min: Some(0.0),
         spread_deg: Some(0.3),
         windows: 60,
+        ..Sample::new(time(minutes), position, compass)
     }
 }
 
@@ -73,6 +71,32 @@ fn order_and_repetition_leave_no_trace() {
     shuffled.rotate_left(333);
     shuffled.extend_from_slice(&samples[100..400]);
     assert_eq!(serde_json::to_string(&run(&shuffled)).unwrap(), expected);
+}
+
+#[test]
+fn samples_that_differ_beside_the_headings_alone_have_an_order() {
+    let samples = voyage();
+    let changes: [fn(&mut Sample); 6] = [
+        |s| s.cog = CourseOverGround::new(91.0),
+        |s| s.roll_deg = Some(1.0),
+        |s| s.roll_spread_deg = Some(1.0),
+        |s| s.temperature_c = Some(1.0),
+        |s| s.gyro_source = Some(SourceId::new(1)),
+        |s| s.satellite_source = Some(SourceId::new(1)),
+    ];
+    let twins = changes.map(|change| {
+        let mut twin = samples[100];
+        change(&mut twin);
+        twin
+    });
+    let before = [&twins[..], &samples].concat();
+    let mut backwards = twins;
+    backwards.reverse();
+    let after = [&samples, &backwards[..]].concat();
+    let found = run(&before);
+    assert_eq!(found.samples.len(), samples.len() + twins.len());
+    let text = |analysis: &Analysis| serde_json::to_string(analysis).unwrap();
+    assert_eq!(text(&found), text(&run(&after)));
 }
 
 #[test]

@@ -403,15 +403,15 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         let met = (variation + variation_error, h, z);
         let read = errors.read(&truth, &passage, minute, met, &mut rng);
         let at = Sample {
-            time: world.time(minute),
-            position,
-            compass: CompassHeading::new(0.0).unwrap(),
-            gyro: None,
-            satellite: None,
             sog_kn: Some(passage.speed_kn),
             rate_of_turn_deg_min: Some(0.0),
             spread_deg: Some(0.4),
             windows: 6,
+            ..Sample::new(
+                world.time(minute),
+                position,
+                CompassHeading::new(0.0).unwrap(),
+            )
         };
         kept.take(at, passage.course, read, gyro_off, faults, &mut rng);
     }

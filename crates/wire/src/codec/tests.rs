@@ -10,16 +10,16 @@ use std::collections::BTreeMap;
 use uuid::Uuid;
 
 fn sample(time: &str, compass: f64, gyro: Option<f64>, satellite: Option<f64>) -> Sample {
+    let time = Timestamp::parse(time).unwrap();
+    let position = Position::new(43.35, -3.03).unwrap();
     Sample {
-        time: Timestamp::parse(time).unwrap(),
-        position: Position::new(43.35, -3.03).unwrap(),
-        compass: CompassHeading::new(compass).unwrap(),
         gyro: gyro.and_then(TrueHeading::new),
         satellite: satellite.and_then(TrueHeading::new),
         sog_kn: Some(12.4),
         rate_of_turn_deg_min: Some(-0.5),
         spread_deg: Some(0.3),
         windows: 60,
+        ..Sample::new(time, position, CompassHeading::new(compass).unwrap())
     }
 }
 
@@ -108,6 +108,15 @@ fn a_missing_value_stays_missing() {
             (decoded.rate_of_turn_deg_min, decoded.satellite),
             (None, None)
         );
+        assert_eq!((decoded.cog, decoded.roll_deg), (None, None));
+        assert_eq!(
+            (decoded.roll_spread_deg, decoded.temperature_c),
+            (None, None)
+        );
+        assert_eq!(
+            (decoded.gyro_source, decoded.satellite_source),
+            (None, None)
+        );
     }
 }
 
@@ -123,7 +132,7 @@ fn samples_come_out_in_order_of_time() {
 #[test]
 fn a_value_out_of_range_is_refused_by_name() {
     type Spoil = fn(&mut Sample);
-    let spoilt: [(&str, Spoil); 6] = [
+    let spoilt: [(&str, Spoil); 9] = [
         ("time", |s| {
             s.time = Timestamp::parse("1850-01-01T00:00:00Z").unwrap();
         }),
@@ -134,6 +143,9 @@ fn a_value_out_of_range_is_refused_by_name() {
         }),
         ("spread_deg", |s| s.spread_deg = Some(-0.1)),
         ("windows", |s| s.windows = 0),
+        ("roll_deg", |s| s.roll_deg = Some(-90.1)),
+        ("roll_spread_deg", |s| s.roll_spread_deg = Some(f64::NAN)),
+        ("temperature_c", |s| s.temperature_c = Some(101.0)),
     ];
     for (name, spoil) in spoilt {
         let mut bad = sample("2026-11-21T07:00:00Z", 1.0, Some(1.0), None);
