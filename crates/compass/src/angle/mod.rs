@@ -3,7 +3,11 @@
 //! `CompassHeading + Deviation = MagneticHeading` and
 //! `MagneticHeading + Variation = TrueHeading`; nothing else compiles. Headings
 //! are always in [0°, 360°), deviation and variation in (−180°, 180°], east
-//! positive.
+//! positive. Bearings and the errors of instruments follow the same rules.
+
+mod bearing;
+
+pub use bearing::{CompassBearing, CompassError, GyroBearing, GyroError, GyroHeading, TrueBearing};
 
 use crate::number::CompactNumber;
 use serde::{Deserialize, Serialize};
@@ -61,12 +65,12 @@ macro_rules! heading {
                 degrees.is_finite().then(|| Self(wrap_360(degrees)))
             }
 
-            /// The heading in degrees, in [0°, 360°).
+            /// Degrees clockwise from north, in [0°, 360°).
             pub fn degrees(self) -> f64 {
                 self.0
             }
 
-            /// The heading in radians, in [0, 2π).
+            /// Radians clockwise from north, in [0, 2π).
             pub fn radians(self) -> f64 {
                 self.0.to_radians()
             }
@@ -104,6 +108,8 @@ macro_rules! heading {
         }
     };
 }
+
+use heading;
 
 heading!(
     CompassHeading,
@@ -178,6 +184,8 @@ macro_rules! difference {
         }
     };
 }
+
+use difference;
 
 difference!(
     Deviation,
