@@ -1,5 +1,5 @@
 //! The sun at the horizon: its altitude there, and its bearing by amplitude
-//! (docs/science.md, §12, equations 49 to 51).
+//! (docs/science.md, §12, equations 28 and 29).
 
 use super::form::HorizonSight;
 

@@ -9,6 +9,7 @@ mod form;
 mod horizon;
 mod observation;
 mod plausibility;
+mod readings;
 mod result;
 mod sun;
 

@@ -4,7 +4,7 @@
 //! so they are accepted once the observer confirms them.
 
 use super::error::AzimuthError;
-use super::observation::{Bearing, Readings, Target};
+use super::readings::{Bearing, Readings, Target};
 use super::result::AzimuthResult;
 use crate::angle::wrap_180;
 

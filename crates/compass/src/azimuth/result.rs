@@ -3,7 +3,7 @@
 use super::error::{AzimuthError, AzimuthProblem};
 use super::form::HorizonSight;
 use super::horizon::{amplitude, centre_altitude_deg};
-use super::observation::{Bearing, Readings, Target};
+use super::readings::{Bearing, Readings, Target};
 use super::sun::{Sun, sun_at};
 use crate::angle::{CompassError, Deviation, GyroError, TrueBearing, TrueHeading, Variation};
 use crate::field::{FieldModel, field};
