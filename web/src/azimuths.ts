@@ -107,14 +107,14 @@ export function fault(draft: Draft): { field: keyof Draft; message: string } | n
   for (const field of numbers) {
     if (Number.isNaN(numberOf(draft, field))) return { field, message: t.notANumber(t[field]) };
   }
-  const needed: (keyof Draft & keyof typeof t)[] = ['compass_heading_deg', 'observer'];
+  const needed: (NumberField | 'observer' | 'name')[] = ['compass_heading_deg', 'observer'];
   if (uses(draft, 'name')) needed.push('name', 'true_bearing_deg');
   if (uses(draft, 'height_of_eye_m')) needed.push('height_of_eye_m');
   if (uses(draft, 'compass_bearing_deg') && draft.gyro_bearing_deg.trim() === '') {
     needed.push('compass_bearing_deg');
   }
-  const field = needed.find((one) => String(draft[one]).trim() === '');
-  return field ? { field, message: t.missing(t[field] as string) } : null;
+  const field = needed.find((one) => draft[one].trim() === '');
+  return field ? { field, message: t.missing(t[field]) } : null;
 }
 
 /** The azimuth that a draft without fault makes. */
@@ -147,7 +147,7 @@ export function inWords(result: AzimuthResult): string {
   const parts = [
     t.error(eastWest(result.compass_error_deg)),
     t.deviation(eastWest(result.deviation_deg), eastWest(result.variation_deg)),
-    ...(gyro === null || gyro === undefined ? [] : [t.gyro(eastWest(gyro))]),
+    ...(gyro === null ? [] : [t.gyro(eastWest(gyro))]),
     t.trueBearing(fineHeading(result.true_bearing_deg)),
   ];
   return parts.join(' · ');

@@ -279,12 +279,8 @@ async fn an_agent_changes_only_its_own_azimuths(server: TestServer) {
 async fn the_deviation_book_has_every_azimuth(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
-    let before = observe(
-        &ada,
-        &nao,
-        &json!({ "time": "2026-10-01T10:00:00Z", "confirmed": true }),
-    );
-    before.await.good();
+    let earlier = json!({ "time": "2026-10-01T10:00:00Z", "confirmed": true });
+    observe(&ada, &nao, &earlier).await.good();
     let entered = observe(&ada, &nao, &json!({ "remark": "hazy" }))
         .await
         .good();
