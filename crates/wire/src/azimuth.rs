@@ -52,7 +52,7 @@ impl AzimuthReport {
             observer,
             remark: trimmed("remark", &self.remark, MAX_NOTE)?,
         };
-        Azimuth::new(report.observation.clone()).map_err(refusal)?;
+        Azimuth::new(report.observation.clone()).map_err(|fault| refusal(&fault))?;
         Ok(report)
     }
 
@@ -66,11 +66,11 @@ impl AzimuthReport {
             confirmed: true,
             ..self.observation.clone()
         };
-        Azimuth::new(observation).map_err(refusal)
+        Azimuth::new(observation).map_err(|fault| refusal(&fault))
     }
 }
 
-fn refusal(fault: AzimuthError) -> ReportError {
+fn refusal(fault: &AzimuthError) -> ReportError {
     error(fault.field, fault.problem.to_string())
 }
 

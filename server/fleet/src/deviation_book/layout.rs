@@ -18,25 +18,27 @@ const GREY: u8 = 90;
 /// Entries on a sheet.
 const ROWS: usize = 33;
 
-/// Left edge of the remarks.
-const REMARKS: f32 = 672.0;
 /// Column of the observed deviation, in bold.
 const DEVIATION: usize = 7;
+/// Column of the observer.
+const OBSERVER: usize = 10;
+/// Column of the remarks.
+const REMARKS: usize = 11;
 
 /// Columns: two lines of title, where the text is anchored, and whether it ends there.
 const COLUMNS: [([&str; 2], f32, bool); 12] = [
     (["", "UTC"], LEFT, false),
     (["", "Position"], 110.0, false),
-    (["Compass", "heading"], 262.0, true),
-    (["True", "heading"], 304.0, true),
-    (["", "by"], 311.0, false),
-    (["Compass", "error"], 408.0, true),
-    (["", "Variation"], 454.0, true),
-    (["Deviation", "observed"], 504.0, true),
-    (["by the card", "(95 % band)"], 580.0, true),
-    (["Observed", "less card"], 624.0, true),
-    (["", "Observer"], 631.0, false),
-    (["", "Remarks"], REMARKS, false),
+    (["Compass", "heading"], 250.0, true),
+    (["True", "heading"], 290.0, true),
+    (["", "by"], 297.0, false),
+    (["Compass", "error"], 392.0, true),
+    (["", "Variation"], 438.0, true),
+    (["Deviation", "observed"], 488.0, true),
+    (["by the card", "(95 % band)"], 564.0, true),
+    (["Observed", "less card"], 606.0, true),
+    (["", "Observer"], 613.0, false),
+    (["", "Remarks"], 662.0, false),
 ];
 
 /// Vessel and period of the book.
@@ -130,7 +132,11 @@ fn row(sheet: &mut Sheet, entry: &Entry, y: f32, line: usize) {
             Style::plain(8.0)
         };
         let style = if ends { style.end() } else { style };
-        let room = if x < REMARKS { WIDTH } else { RIGHT - x };
+        let room = match column {
+            OBSERVER => COLUMNS[REMARKS].1 - x - 3.0,
+            REMARKS => RIGHT - x,
+            _ => WIDTH,
+        };
         let text = cut(&text, style.face, style.size, room);
         sheet.text((x, y), style, text);
     }
