@@ -4,7 +4,7 @@ use super::cards::{CardReading, Cards};
 use super::select::{Occasion, select_entries};
 use crate::azimuths::StoredAzimuth;
 use crate::card;
-use binnacle_compass::angle::{CompassError, GyroHeading, TrueHeading, wrap_180};
+use binnacle_compass::angle::{GyroError, GyroHeading, TrueHeading, wrap_180};
 use binnacle_compass::azimuth::AzimuthKind;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::result::{SampleDiagnostic, SampleReason};
@@ -215,8 +215,8 @@ pub(super) fn of_azimuth(stored: &StoredAzimuth, cards: Cards<'_>) -> Entry {
         spread_deg: None,
         reason: None,
         observer: Observer::Officer,
-        compass_error_deg: CompassError::degrees_east(result.compass_error_deg),
-        gyro_error_deg: result.gyro_error_deg.map(|error| error.degrees_east()),
+        compass_error_deg: result.compass_error_deg.degrees_east(),
+        gyro_error_deg: result.gyro_error_deg.map(GyroError::degrees_east),
         initials: Some(stored.observer.clone()),
         remark: Some(stored.remark.clone()).filter(|remark| !remark.is_empty()),
         azimuth_id: Some(stored.id),

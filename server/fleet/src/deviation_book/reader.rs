@@ -138,7 +138,7 @@ impl Range {
         let to = chunk
             .map(|chunk| chunk.to)
             .into_iter()
-            .chain(times().last());
+            .chain(times().next_back());
         Some(Range {
             from: from.min()?,
             // A model that was made at the last instant counts.
