@@ -34,6 +34,7 @@ pub mod deviation;
 pub mod deviation_table;
 pub mod models;
 
+pub mod azimuths;
 pub mod card;
 pub mod deviation_book;
 pub mod logbook;

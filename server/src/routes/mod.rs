@@ -13,8 +13,9 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use binnacle_fleet::models::NoModelFields;
 use binnacle_fleet::{
-    alerts, binnacles, card, changes, compasses, deviation_book, deviation_table, enrolment,
-    ingest, logbook, models, operators, overview, particulars, samples, settings, vessel_api,
+    alerts, azimuths, binnacles, card, changes, compasses, deviation_book, deviation_table,
+    enrolment, ingest, logbook, models, operators, overview, particulars, samples, settings,
+    vessel_api,
 };
 use binnacle_orders::work_orders::NotAdjustableFields;
 use binnacle_orders::{api as orders_api, firms};
@@ -87,6 +88,7 @@ fn for_agents() -> OpenApiRouter<ServerState> {
         .merge(enrolment::agent_router())
         .merge(ingest::router())
         .merge(logbook::agent_router())
+        .merge(azimuths::agent_router())
 }
 
 fn for_people() -> OpenApiRouter<ServerState> {
@@ -110,6 +112,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(enrolment::router())
         .merge(settings::router())
         .merge(logbook::router())
+        .merge(azimuths::router())
         .merge(models::router())
         .merge(deviation_table::router())
         .merge(card::router())

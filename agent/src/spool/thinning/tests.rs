@@ -47,13 +47,13 @@ fn windows(batch: &Batch) -> u64 {
 
 #[tokio::test]
 async fn a_full_spool_thins_and_says_so_and_every_window_is_accounted_for() {
-    let (_directory, spool) = stuffed(300).await;
+    let (_directory, spool) = stuffed(400).await;
     let before = spool.status().await.unwrap().used_bytes;
     let limit = before / 2;
     spool.shrink_to_limit(limit).await.unwrap();
     assert!(spool.status().await.unwrap().used_bytes <= limit);
     let batches = all(&spool).await;
-    assert_eq!(batches.len(), 300);
+    assert_eq!(batches.len(), 400);
     for (batch, seq) in batches.iter().zip(1..) {
         assert_eq!(batch.seq, seq);
         assert_eq!(windows(batch), batch.tally["accepted"]);

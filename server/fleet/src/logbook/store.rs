@@ -67,8 +67,8 @@ pub(super) struct Author {
     board_revision: Option<u32>,
 }
 
-/// A transaction that changes a vessel's logbook.
-pub(super) struct Change<'a> {
+/// A transaction that changes what people report of a vessel.
+pub(crate) struct Change<'a> {
     app: &'a App,
     vessel: VesselId,
     now: Time,
@@ -76,7 +76,7 @@ pub(super) struct Change<'a> {
 }
 
 impl<'a> Change<'a> {
-    pub(super) async fn begin(
+    pub(crate) async fn begin(
         app: &'a App,
         request: &RequestContext,
         vessel: VesselId,
@@ -91,12 +91,12 @@ impl<'a> Change<'a> {
         })
     }
 
-    pub(super) fn tx(&mut self) -> &mut Tx {
+    pub(crate) fn tx(&mut self) -> &mut Tx {
         &mut self.tx
     }
 
     /// Commits the change, enqueues an analysis of the vessel, and notifies dashboards.
-    pub(super) async fn commit(mut self) -> Result<()> {
+    pub(crate) async fn commit(mut self) -> Result<()> {
         analysis_queue::enqueue(&mut self.tx, self.vessel, self.now, 0.0).await?;
         let event =
             events::insert(&mut self.tx, self.vessel, event_kinds::LOGBOOK, self.now).await?;
