@@ -7,8 +7,8 @@ use crate::config::RolesConfig;
 use crate::input;
 use crate::sampler::Tally;
 use anyhow::Context;
-use binnacle_compass::angle::TrueHeading;
-use binnacle_compass::sample::Sample;
+use binnacle_compass::angle::{CourseOverGround, TrueHeading};
+use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_wire::messages::Settings;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -103,6 +103,12 @@ impl Replayed {
             "rate_of_turn_deg_min",
             "spread_deg",
             "windows",
+            "cog_deg",
+            "roll_deg",
+            "roll_spread_deg",
+            "temperature_c",
+            "gyro_source",
+            "satellite_source",
         ])?;
         for sample in &self.samples {
             table.write_record(record(sample))?;
@@ -111,8 +117,10 @@ impl Replayed {
     }
 }
 
-fn record(sample: &Sample) -> [String; 10] {
+fn record(sample: &Sample) -> [String; 16] {
     let heading = |heading: Option<TrueHeading>| number(heading.map(TrueHeading::degrees), 3);
+    let source =
+        |source: Option<SourceId>| source.map_or(String::new(), |s| s.number().to_string());
     [
         sample.time.to_string(),
         number(Some(sample.position.lat_deg()), 5),
@@ -124,6 +132,12 @@ fn record(sample: &Sample) -> [String; 10] {
         number(sample.rate_of_turn_deg_min, 2),
         number(sample.spread_deg, 3),
         sample.windows.to_string(),
+        number(sample.cog.map(CourseOverGround::degrees), 2),
+        number(sample.roll_deg, 2),
+        number(sample.roll_spread_deg, 2),
+        number(sample.temperature_c, 1),
+        source(sample.gyro_source),
+        source(sample.satellite_source),
     ]
 }
 

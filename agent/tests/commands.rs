@@ -51,11 +51,14 @@ async fn a_recording_becomes_a_table_and_a_tally() {
     let mut rows = table.lines();
     assert_eq!(
         rows.next().unwrap(),
-        "time,lat,lon,compass_deg,gyro_deg,satellite_deg,sog_kn,rate_of_turn_deg_min,spread_deg,windows"
+        "time,lat,lon,compass_deg,gyro_deg,satellite_deg,sog_kn,rate_of_turn_deg_min,spread_deg,windows,\
+         cog_deg,roll_deg,roll_spread_deg,temperature_c,gyro_source,satellite_source"
     );
     assert_eq!(
         rows.next().unwrap(),
-        "2026-09-01T00:08:10Z,43.50000,-3.00000,42.000,45.000,,12.00,0.00,0.000,60"
+        // 55588 is the number of the source that any recording calls "HE THS".
+        "2026-09-01T00:08:10Z,43.50000,-3.00000,42.000,45.000,,12.00,0.00,0.000,60,\
+         47.00,-0.60,1.50,18.0,55588,"
     );
     let tally: Value = serde_json::from_slice(&done.stderr).unwrap();
     assert_eq!(tally["samples"], rows.count() + 1);
@@ -138,7 +141,7 @@ async fn a_wrong_configuration_is_one_line_and_exit_code_2() {
         let done = agent.call(arguments).await;
         let said = text(&done.stderr);
         assert_eq!(done.status.code(), Some(2), "{said}");
-        assert!(said.contains("agent.toml:19: stale_s: "), "{said}");
+        assert!(said.contains("agent.toml:21: stale_s: "), "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
     }
 }
@@ -248,7 +251,7 @@ async fn what_was_said_in_each_second_can_be_exported_and_bad_questions_are_refu
     assert_eq!(table.lines().count(), 1 + 10, "{table}");
     assert_eq!(
         table.lines().nth(1),
-        Some("2026-09-01T00:06:30Z,43.5000000,-3.0000000,42.00,45.00,,12.00,0.0,")
+        Some("2026-09-01T00:06:30Z,43.5000000,-3.0000000,42.00,45.00,,12.00,0.0,-2.10")
     );
     let wrong = agent.call(&["export", "--from", "yesterday"]).await;
     assert_eq!(wrong.status.code(), Some(2));

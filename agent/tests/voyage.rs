@@ -5,11 +5,12 @@
 mod common;
 
 use binnacle_compass::angle::wrap_180;
+use binnacle_compass::sample::SourceId;
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::sentence::ThsMode;
 use binnacle_nmea::{Data, parse};
 use common::agent::Agent;
-use common::bridge::{self, Bridge, LEAD_DEG};
+use common::bridge::{self, AIR_C, Bridge, DRIFT_DEG, LEAD_DEG, LIST_DEG, ROLL_DEG};
 use common::server::{STREAM, TestServer};
 use serde_json::Value;
 use sqlx::sqlite::SqliteConnectOptions;
@@ -83,6 +84,14 @@ async fn a_voyage_reaches_the_server_and_comes_back_as_a_heading() {
             let offset = sample.time.micros() / 1_000_000 - bridge::START_S;
             let heading = bridge::heading_deg(offset);
             assert!(wrap_180(sample.gyro.unwrap().degrees() - heading).abs() < 0.06);
+            let drift = sample.cog.unwrap().degrees() - heading;
+            assert!((wrap_180(drift) - DRIFT_DEG).abs() < 0.51, "{sample:?}");
+            assert_eq!(sample.roll_deg, Some(LIST_DEG));
+            assert_eq!(sample.roll_spread_deg, Some(ROLL_DEG));
+            assert_eq!(sample.temperature_c, Some(AIR_C));
+            let source = SourceId::from_name("bridge HE THS");
+            assert_eq!(sample.gyro_source, Some(source));
+            assert_eq!(sample.satellite_source, None);
             windows += u64::from(sample.windows);
         }
     }

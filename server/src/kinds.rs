@@ -1,17 +1,42 @@
-//! Registry of the kinds of messages, put together from those of each capability.
+//! Registry of the kinds of messages, notices and live events, put together from those of each
+//! capability in the order of the OpenAPI document.
 
-use binnacle_fleet::alerts;
-use binnacle_orders::work_orders;
-use binnacle_planning::{notifications, reports};
-use binnacle_platform::outbox::Kind;
+use binnacle_fleet::{alerts, event_kinds as fleet_events};
+use binnacle_orders::{event_kinds as orders_events, work_orders};
+use binnacle_planning::notifications::{self, NoticeKinds};
+use binnacle_planning::{event_kinds as planning_events, reports};
 use binnacle_platform::webhooks::{Audience, DeclaredKind, MessageKinds};
+use binnacle_platform::{events, outbox};
 
-/// Returns all kinds of messages of the server, in the order of the OpenAPI document.
+/// Returns all kinds of messages of the server.
 pub fn message_kinds() -> MessageKinds {
-    alerts::message_kinds::ALL
+    let kinds = alerts::message_kinds::ALL
         .into_iter()
         .chain(work_orders::message_kinds::ALL)
         .chain([notifications::MESSAGE_KIND, reports::MESSAGE_KIND])
-        .chain([DeclaredKind::new(Kind::TEST, Audience::Nobody)])
+        .chain([DeclaredKind::new(outbox::Kind::TEST, Audience::Nobody)]);
+    MessageKinds::new(kinds, work_orders::message_kinds::SUBJECT)
+}
+
+/// Returns all kinds of notices of the server.
+pub fn notice_kinds() -> NoticeKinds {
+    notifications::NOTICE_KINDS
+        .into_iter()
+        .chain(work_orders::notice_kinds::ALL)
+        .chain([alerts::NOTICE_KIND])
         .collect()
+}
+
+/// Returns all kinds of live events of the server.
+pub fn event_kinds() -> [events::Kind; 8] {
+    [
+        fleet_events::BATCH,
+        fleet_events::MODEL,
+        fleet_events::LOGBOOK,
+        fleet_events::ALERT,
+        orders_events::WORK_ORDER,
+        planning_events::PORT_CALL,
+        planning_events::SCHEDULE,
+        fleet_events::NEED,
+    ]
 }

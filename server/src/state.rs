@@ -1,10 +1,13 @@
 //! State of the whole server: that of the platform and of single capabilities.
 
-use crate::kinds::message_kinds;
+use crate::kinds::{message_kinds, notice_kinds};
 use axum::extract::FromRef;
+use binnacle_fleet::alerts;
 use binnacle_orders::berth_session::CorrectorPlanSlots;
+use binnacle_planning::notifications::NoticeKinds;
 use binnacle_planning::schedule::PlanSlots;
 use binnacle_platform::app::App;
+use binnacle_platform::mail::TopicList;
 use binnacle_platform::webhooks::MessageKinds;
 
 /// State of every route; each handler takes the part it needs by [`FromRef`].
@@ -18,6 +21,8 @@ pub struct ServerState {
     pub corrector_plan_slots: CorrectorPlanSlots,
     /// Kinds of messages that webhooks may subscribe to.
     pub message_kinds: MessageKinds,
+    /// Kinds of notices that users choose a way of delivery for.
+    pub notice_kinds: NoticeKinds,
 }
 
 impl ServerState {
@@ -28,6 +33,7 @@ impl ServerState {
             plan_slots: PlanSlots::default(),
             corrector_plan_slots: CorrectorPlanSlots::default(),
             message_kinds: message_kinds(),
+            notice_kinds: notice_kinds(),
         }
     }
 }
@@ -53,5 +59,17 @@ impl FromRef<ServerState> for CorrectorPlanSlots {
 impl FromRef<ServerState> for MessageKinds {
     fn from_ref(state: &ServerState) -> MessageKinds {
         state.message_kinds.clone()
+    }
+}
+
+impl FromRef<ServerState> for NoticeKinds {
+    fn from_ref(state: &ServerState) -> NoticeKinds {
+        state.notice_kinds.clone()
+    }
+}
+
+impl FromRef<ServerState> for TopicList {
+    fn from_ref(_: &ServerState) -> TopicList {
+        alerts::TOPIC_LIST
     }
 }

@@ -53,6 +53,7 @@ gyro = [{{ input = "bridge", talker = "HE", sentence = "THS" }}]
 satellite = [{{ input = "bridge", talker = "GP", sentence = "THS" }}]
 position = [{{ input = "bridge", talker = "GP", sentence = "RMC" }}]
 rate_of_turn = [{{ input = "bridge", sentence = "ROT" }}]
+roll = [{{ input = "bridge", sentence = "XDR" }}]
 [output]
 tcp_server = "127.0.0.1:0"
 interval_s = 0.1

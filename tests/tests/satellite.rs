@@ -26,12 +26,12 @@ const FOUR_TIMES_A_DAY: Policy = Policy {
 const DAILY: Policy = Policy {
     profile: "metered",
     seal_s: 24 * 3600,
-    bytes_a_day: 2_700.0,
+    bytes_a_day: 2_800.0,
 };
 const HOURLY: Policy = Policy {
     profile: "vsat",
     seal_s: 3600,
-    bytes_a_day: 12_000.0,
+    bytes_a_day: 12_900.0,
 };
 
 /// Days to measure: a few, or a month with `make bench-link`.

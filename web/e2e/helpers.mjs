@@ -34,10 +34,31 @@ export async function openVessel(page) {
   const name = await link.innerText();
   await link.click();
   await page.getByRole('heading', { name, level: 1 }).waitFor();
+  await drawnInFull(page);
   // It is drawn when it is about to be seen.
   await chart(page).scrollIntoViewIfNeeded();
   await curve(page).waitFor();
   return name;
+}
+
+/** Opens the page of a vessel, or one part of it. */
+export async function goToVessel(page, id, part = '') {
+  await page.goto(`/vessels/${id}${part}`);
+  await page.getByRole('heading', { level: 1 }).waitFor();
+  await drawnInFull(page);
+}
+
+/**
+ * Waits until no part of the page is still loading. Parts are built one after another, and each
+ * moves those below it, also while a button there is pressed.
+ */
+async function drawnInFull(page) {
+  await page.waitForFunction(
+    () =>
+      ![...document.querySelectorAll('main [role=status]')].some(
+        (status) => status.textContent.trim() === 'Loading…',
+      ),
+  );
 }
 
 export const chart = (page) => page.getByTestId('deviation-chart');

@@ -15,6 +15,7 @@ import { browserPath, flags, required } from './browser.mjs';
 import { access } from './scenarios/access.mjs';
 import { adjusting } from './scenarios/adjusting.mjs';
 import { alerts } from './scenarios/alerts.mjs';
+import { azimuths } from './scenarios/azimuths.mjs';
 import { fleet } from './scenarios/fleet.mjs';
 import { link } from './scenarios/link.mjs';
 import { live } from './scenarios/live.mjs';
@@ -32,6 +33,7 @@ const groups = {
   fleet,
   link,
   vessel,
+  azimuths,
   papers,
   alerts,
   session,

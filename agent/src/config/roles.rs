@@ -25,6 +25,9 @@ pub(crate) struct RolesConfig {
     /// Roll.
     #[serde(deserialize_with = "roll_sources")]
     pub(crate) roll: Vec<SourceConfig>,
+    /// Temperature of the air.
+    #[serde(deserialize_with = "temperature_sources")]
+    pub(crate) temperature: Vec<SourceConfig>,
 }
 
 /// One source; an omitted key matches anything.
@@ -54,6 +57,17 @@ impl SourceConfig {
         }
     }
 
+    /// Returns the name of the source, which is the same on every start: what the configuration
+    /// asks for.
+    pub(crate) fn name(&self) -> String {
+        let input = self.input.as_ref().map(|input| input.get_ref().clone());
+        let letters = |letters: &[u8]| String::from_utf8_lossy(letters).into_owned();
+        let talker = self.talker.map(|talker| letters(&talker));
+        let sentence = self.sentence.map(|sentence| letters(&sentence));
+        let parts: Vec<String> = [input, talker, sentence].into_iter().flatten().collect();
+        parts.join(" ")
+    }
+
     /// Returns whether the talker matches.
     pub(crate) fn matches_talker(&self, talker: [u8; 2]) -> bool {
         self.talker.is_none_or(|wanted| wanted == talker)
@@ -70,6 +84,7 @@ impl RolesConfig {
             &self.position,
             &self.rate_of_turn,
             &self.roll,
+            &self.temperature,
         ]
         .into_iter()
         .flatten()
@@ -85,6 +100,7 @@ impl RolesConfig {
             &mut roles.position,
             &mut roles.rate_of_turn,
             &mut roles.roll,
+            &mut roles.temperature,
         ] {
             for source in sources {
                 source.input = None;
@@ -101,6 +117,7 @@ impl RolesConfig {
             position: Vec::new(),
             rate_of_turn: Vec::new(),
             roll: Vec::new(),
+            temperature: Vec::new(),
         }
     }
 
@@ -119,6 +136,7 @@ impl RolesConfig {
             position: vec![source(None, *b"RMC")],
             rate_of_turn: vec![source(None, *b"ROT")],
             roll: vec![source(None, *b"XDR")],
+            temperature: vec![source(None, *b"MTA"), source(None, *b"XDR")],
         }
     }
 }
@@ -186,6 +204,10 @@ fn rate_of_turn_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
 
 fn roll_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
     sources_of(d, &[b"XDR"], "XDR")
+}
+
+fn temperature_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
+    sources_of(d, &[b"MTA", b"XDR"], "MTA or XDR")
 }
 
 fn sources_of<'de, D: Deserializer<'de>>(

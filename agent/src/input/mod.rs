@@ -12,6 +12,7 @@ mod link;
 mod pump;
 mod readings;
 mod signalk_delta;
+mod signalk_value;
 mod stats;
 
 mod file;

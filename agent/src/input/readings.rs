@@ -1,16 +1,18 @@
 //! Readings of each kind of sentence.
 //!
-//! VHW, HBT and courses over ground give no reading: VHW repeats the heading of another instrument
-//! without its status, and a course is never a heading.
+//! VHW and HBT give no reading: VHW repeats the heading of another instrument without its status. A
+//! course over ground is never a heading.
 
 use crate::instruments::Reading;
-use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::angle::{
+    CompassHeading, CourseOverGround, Deviation, MagneticHeading, TrueHeading, Variation,
+};
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::Data;
 use binnacle_nmea::sentence::{self, Hdg, Rmc, Ths, ThsMode, Xdr};
 
-/// Passes each reading of a sentence to `each`: none, one or two.
+/// Passes each reading of a sentence to `each`: up to three.
 pub(super) fn readings(data: &Data, mut each: impl FnMut(Reading)) {
     let reading = match data {
         Data::Hdg(hdg) => compass(hdg),
@@ -26,20 +28,29 @@ pub(super) fn readings(data: &Data, mut each: impl FnMut(Reading)) {
         Data::Rot(rot) => rot
             .rate_deg_min_starboard
             .map(|deg_min| Reading::RateOfTurn { deg_min }),
-        Data::Rmc(Some(rmc)) => fix_with_time(rmc),
+        Data::Rmc(Some(rmc)) => {
+            fix_with_time(rmc).into_iter().for_each(&mut each);
+            course(rmc.cog_deg_true)
+        }
         Data::Gga(Some(gga)) => gga.position.and_then(fix),
         Data::Gll(Some(gll)) => gll.position.and_then(fix),
         Data::Zda(zda) => zda.unix_micros().and_then(timestamp).map(Reading::Time),
-        Data::Vtg(Some(vtg)) => vtg.sog_kn.map(|sog_kn| Reading::Speed { sog_kn }),
+        Data::Vtg(Some(vtg)) => {
+            let speed = vtg.sog_kn.map(|sog_kn| Reading::Speed { sog_kn });
+            speed.into_iter().for_each(&mut each);
+            course(vtg.cog_deg_true)
+        }
         Data::Xdr(Xdr {
             roll_deg_starboard_down,
             pitch_deg_bow_up,
+            air_temperature_c,
         }) => {
-            if let Some(deg) = *pitch_deg_bow_up {
-                each(Reading::Pitch { deg });
-            }
-            roll_deg_starboard_down.map(|deg| Reading::Roll { deg })
+            let pitch = pitch_deg_bow_up.map(|deg| Reading::Pitch { deg });
+            let roll = roll_deg_starboard_down.map(|deg| Reading::Roll { deg });
+            pitch.into_iter().chain(roll).for_each(&mut each);
+            temperature(*air_temperature_c)
         }
+        Data::Mta(mta) => temperature(mta.air_temperature_c),
         Data::Rmc(None)
         | Data::Gga(None)
         | Data::Gll(None)
@@ -50,6 +61,14 @@ pub(super) fn readings(data: &Data, mut each: impl FnMut(Reading)) {
     if let Some(reading) = reading {
         each(reading);
     }
+}
+
+fn course(degrees: Option<f64>) -> Option<Reading> {
+    degrees.and_then(CourseOverGround::new).map(Reading::Course)
+}
+
+fn temperature(celsius: Option<f64>) -> Option<Reading> {
+    celsius.map(|celsius| Reading::Temperature { celsius })
 }
 
 fn compass(hdg: &Hdg) -> Option<Reading> {
@@ -165,11 +184,14 @@ mod tests {
         let position = Position::new(-43.5, -5.25).unwrap();
         assert_eq!(
             read("GPRMC,120000.5,A,4330.0,S,00515.0,W,5.0,90.0,020126,,"),
-            [Reading::Fix {
-                position,
-                time,
-                sog_kn: Some(5.0)
-            }]
+            [
+                Reading::Fix {
+                    position,
+                    time,
+                    sog_kn: Some(5.0)
+                },
+                Reading::Course(CourseOverGround::new(90.0).unwrap())
+            ]
         );
         assert_eq!(
             read("GPGLL,4330.0,S,00515.0,W,120000,A"),
@@ -182,6 +204,21 @@ mod tests {
         let time = Reading::Time(time.unwrap());
         assert_eq!(read("GPRMC,120000.5,A,,,,,,,020126,,"), [time]);
         assert_eq!(read("GPZDA,120000.5,02,01,2026,,"), [time]);
+    }
+
+    #[test]
+    fn a_speed_comes_with_its_course() {
+        let course = Reading::Course(CourseOverGround::new(90.0).unwrap());
+        let speed = Reading::Speed { sog_kn: 5.0 };
+        assert_eq!(read("GPVTG,90.0,T,,M,5.0,N,9.3,K,A"), [speed, course]);
+        assert_eq!(read("GPVTG,,T,85.0,M,5.0,N,9.3,K,A"), [speed]);
+    }
+
+    #[test]
+    fn a_temperature_is_read_from_either_sentence() {
+        let air = [Reading::Temperature { celsius: -2.5 }];
+        assert_eq!(read("WIMTA,-2.5,C"), air);
+        assert_eq!(read("IIXDR,C,-2.5,C,TempAir"), air);
     }
 
     #[test]

@@ -7,19 +7,17 @@
 //! Values that a server computes are ignored: a true heading made of a magnetic one is no reference
 //! for the compass. Other vessels are ignored too.
 
+use super::signalk_value::{difference_deg, direction_deg, read_standalone};
 use super::stats::InputStats;
 use crate::instruments::{Observation, Reading};
-use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
-use binnacle_compass::position::Position;
-use binnacle_compass::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, Deviation, Variation};
 use serde::Deserialize;
 use serde_json::Value;
 use std::borrow::Cow;
-use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Paths to subscribe to.
-pub(super) const PATHS: [&str; 10] = [
+pub(super) const PATHS: [&str; 12] = [
     "navigation.headingCompass",
     "navigation.headingMagnetic",
     "navigation.headingTrue",
@@ -29,17 +27,12 @@ pub(super) const PATHS: [&str; 10] = [
     "navigation.attitude",
     "navigation.position",
     "navigation.speedOverGround",
+    "navigation.courseOverGroundTrue",
+    "environment.outside.temperature",
     "navigation.datetime",
 ];
 
 const TALKER: [u8; 2] = *b"SK";
-const KNOTS_A_METRE_PER_SECOND: f64 = 3600.0 / 1852.0;
-/// Highest plausible speed.
-const MAX_SPEED_M_S: f64 = 100.0;
-/// Highest plausible rate of turn.
-const MAX_TURN_RAD_S: f64 = PI;
-/// Rounding tolerance: four decimals of a full circle may exceed it.
-const ROUNDING_RAD: f64 = 1e-4;
 /// Source of values that the server computes itself.
 const DERIVED: &str = "derived-data";
 
@@ -80,21 +73,6 @@ struct PathValue<'a> {
     path: Cow<'a, str>,
     value: Value,
 }
-
-#[derive(Deserialize)]
-struct Attitude {
-    roll: Option<f64>,
-    pitch: Option<f64>,
-}
-
-#[derive(Deserialize)]
-struct LatLon {
-    latitude: f64,
-    longitude: f64,
-}
-
-/// A value that its path must not have.
-struct InvalidValue;
 
 impl DeltaReader {
     pub(super) fn new(input: Arc<str>) -> DeltaReader {
@@ -190,70 +168,6 @@ impl DeltaReader {
     }
 }
 
-/// Reads a path whose value stands alone.
-fn read_standalone(
-    path: &str,
-    value: &Value,
-    push: &mut impl FnMut(&[u8; 3], Reading),
-) -> Result<(), InvalidValue> {
-    if value.is_null() {
-        return Ok(());
-    }
-    match path {
-        "navigation.headingMagnetic" => {
-            let heading = direction_deg(value)?.and_then(MagneticHeading::new);
-            push(b"HDM", Reading::Magnetic(heading.ok_or(InvalidValue)?));
-        }
-        "navigation.headingTrue" => {
-            let heading = direction_deg(value)?.and_then(TrueHeading::new);
-            push(b"HDT", Reading::True(heading.ok_or(InvalidValue)?));
-        }
-        "navigation.rateOfTurn" => {
-            let rate = number(value)?;
-            if rate.abs() > MAX_TURN_RAD_S {
-                return Err(InvalidValue);
-            }
-            let deg_min = rate.to_degrees() * 60.0;
-            push(b"ROT", Reading::RateOfTurn { deg_min });
-        }
-        "navigation.attitude" => {
-            let attitude = Attitude::deserialize(value).map_err(|_| InvalidValue)?;
-            if let Some(pitch) = attitude.pitch {
-                let deg = tilt_deg(pitch)?;
-                push(b"XDR", Reading::Pitch { deg });
-            }
-            if let Some(roll) = attitude.roll {
-                let deg = tilt_deg(roll)?;
-                push(b"XDR", Reading::Roll { deg });
-            }
-        }
-        "navigation.position" => {
-            let lat_lon = LatLon::deserialize(value).map_err(|_| InvalidValue)?;
-            let fix = Reading::Fix {
-                position: Position::new(lat_lon.latitude, lat_lon.longitude)
-                    .map_err(|_| InvalidValue)?,
-                time: None,
-                sog_kn: None,
-            };
-            push(b"RMC", fix);
-        }
-        "navigation.speedOverGround" => {
-            let speed_m_s = number(value)?;
-            if !(0.0..=MAX_SPEED_M_S).contains(&speed_m_s) {
-                return Err(InvalidValue);
-            }
-            let sog_kn = speed_m_s * KNOTS_A_METRE_PER_SECOND;
-            push(b"VTG", Reading::Speed { sog_kn });
-        }
-        _ => {
-            let text = value.as_str().ok_or(InvalidValue)?;
-            let at = Timestamp::parse(text).map_err(|_| InvalidValue)?;
-            push(b"ZDA", Reading::Time(at));
-        }
-    }
-    Ok(())
-}
-
 fn strip_vessel_prefix(context: &str) -> &str {
     context.strip_prefix("vessels.").unwrap_or(context)
 }
@@ -262,48 +176,13 @@ fn is_derived(source: &str) -> bool {
     source == DERIVED || source.starts_with("derived-data.")
 }
 
-fn number(value: &Value) -> Result<f64, InvalidValue> {
-    value
-        .as_f64()
-        .filter(|number| number.is_finite())
-        .ok_or(InvalidValue)
-}
-
-/// Converts radians from 0 to a full circle to degrees; `None` for null.
-fn direction_deg(value: &Value) -> Result<Option<f64>, InvalidValue> {
-    bounded_deg(value, 0.0 - ROUNDING_RAD..=TAU + ROUNDING_RAD)
-}
-
-/// Converts radians from −π to π to degrees; `None` for null.
-fn difference_deg(value: &Value) -> Result<Option<f64>, InvalidValue> {
-    bounded_deg(value, -PI - ROUNDING_RAD..=PI + ROUNDING_RAD)
-}
-
-fn bounded_deg(
-    value: &Value,
-    range: std::ops::RangeInclusive<f64>,
-) -> Result<Option<f64>, InvalidValue> {
-    if value.is_null() {
-        return Ok(None);
-    }
-    let radians = number(value)?;
-    if !range.contains(&radians) {
-        return Err(InvalidValue);
-    }
-    Ok(Some(radians.to_degrees()))
-}
-
-fn tilt_deg(radians: f64) -> Result<f64, InvalidValue> {
-    if radians.abs() > PI {
-        return Err(InvalidValue);
-    }
-    Ok(radians.to_degrees())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use binnacle_compass::position::Position;
+    use binnacle_compass::time::Timestamp;
     use serde_json::json;
+    use std::f64::consts::TAU;
 
     fn read_all(messages: &[Value]) -> (Vec<Observation>, InputStats) {
         let stats = InputStats::default();
@@ -388,6 +267,14 @@ mod tests {
         );
         let speed = one("navigation.speedOverGround", &json!(5.144_444_444));
         assert!(matches!(speed[..], [Reading::Speed { sog_kn }] if (sog_kn - 10.0).abs() < 1e-6));
+        let course = one("navigation.courseOverGroundTrue", &json!(1.5));
+        assert!(
+            matches!(course[..], [Reading::Course(course)] if (course.radians() - 1.5).abs() < 1e-9)
+        );
+        let air = one("environment.outside.temperature", &json!(283.15));
+        assert!(
+            matches!(air[..], [Reading::Temperature { celsius }] if (celsius - 10.0).abs() < 1e-9)
+        );
         let attitude = one(
             "navigation.attitude",
             &json!({"roll": -0.1, "pitch": 0.05, "yaw": 1}),

@@ -4,7 +4,9 @@
 //! A value that the instrument left empty is absent, never zero. The compass heading is always the
 //! raw reading, before any deviation.
 
-use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::angle::{
+    CompassHeading, CourseOverGround, Deviation, MagneticHeading, TrueHeading, Variation,
+};
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 use std::sync::Arc;
@@ -68,6 +70,8 @@ pub(crate) enum Reading {
         /// Knots.
         sog_kn: f64,
     },
+    /// VTG or RMC: course over ground, which is never a heading.
+    Course(CourseOverGround),
     /// ROT with status A: degrees a minute, starboard positive.
     RateOfTurn {
         /// Degrees a minute.
@@ -77,6 +81,11 @@ pub(crate) enum Reading {
     Roll {
         /// Degrees.
         deg: f64,
+    },
+    /// Temperature of the air.
+    Temperature {
+        /// Degrees Celsius.
+        celsius: f64,
     },
     /// Pitch, degrees, bow up positive.
     Pitch {

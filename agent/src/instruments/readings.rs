@@ -1,6 +1,6 @@
 //! Latest readings of the instruments.
 
-use super::roles::Signal;
+use super::roles::{ReferenceHeading, Signal};
 use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use binnacle_compass::position::Position;
 use std::time::Duration;
@@ -41,9 +41,13 @@ impl Readings {
     pub(crate) fn apply(&mut self, signal: Signal, heard: Instant) {
         match signal {
             Signal::Compass(value) => self.compass = Some(Latest { value, heard }),
-            Signal::Gyro(value) => self.gyro = Some(Latest { value, heard }),
+            Signal::Gyro(ReferenceHeading { heading: value, .. }) => {
+                self.gyro = Some(Latest { value, heard });
+            }
             Signal::GyroInvalid => self.gyro = None,
-            Signal::Satellite(value) => self.satellite = Some(Latest { value, heard }),
+            Signal::Satellite(ReferenceHeading { heading: value, .. }) => {
+                self.satellite = Some(Latest { value, heard });
+            }
             Signal::SatelliteInvalid => self.satellite = None,
             Signal::Position(value) => self.position = Some(Latest { value, heard }),
             Signal::Speed(value) => self.sog_kn = Some(Latest { value, heard }),
@@ -51,7 +55,7 @@ impl Readings {
                 self.rate_of_turn_deg_min = Some(Latest { value, heard });
             }
             Signal::Roll(value) => self.roll_deg = Some(Latest { value, heard }),
-            Signal::Time(_) | Signal::Jump(_) => {}
+            Signal::Time(_) | Signal::Jump(_) | Signal::Course(_) | Signal::Temperature(_) => {}
         }
     }
 }

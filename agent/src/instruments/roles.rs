@@ -5,12 +5,13 @@
 //! itself invalid counts as silent.
 
 use super::gnss_clock::{GnssClock, Step};
-use super::observation::{AGENT_TALKER, Observation, Reading};
+use super::observation::{Observation, Reading};
+use super::role::Role;
 use crate::config::{RolesConfig, SourceConfig};
-use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
 use binnacle_compass::position::Position;
+use binnacle_compass::sample::SourceId;
 use binnacle_compass::time::Timestamp;
-use std::sync::Arc;
 
 /// Signal of an instrument, whichever source it came from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,21 +23,32 @@ pub(crate) enum Signal {
     /// Raw compass.
     Compass(CompassHeading),
     /// Gyro.
-    Gyro(TrueHeading),
+    Gyro(ReferenceHeading),
     /// Gyro reports itself invalid.
     GyroInvalid,
     /// Satellite compass.
-    Satellite(TrueHeading),
+    Satellite(ReferenceHeading),
     /// Satellite compass reports itself invalid.
     SatelliteInvalid,
     /// Fix.
     Position(Position),
     /// Speed over ground, knots.
     Speed(f64),
+    /// Course over ground.
+    Course(CourseOverGround),
     /// Degrees per minute, starboard positive.
     RateOfTurn(f64),
     /// Degrees, starboard down positive.
     Roll(f64),
+    /// Degrees Celsius.
+    Temperature(f64),
+}
+
+/// Heading of a reference, and the source that gave it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ReferenceHeading {
+    pub(crate) heading: TrueHeading,
+    pub(crate) source: SourceId,
 }
 
 /// The vessel's instruments and its clock.
@@ -48,6 +60,7 @@ pub(crate) struct Roles {
     position: Role,
     rate_of_turn: Role,
     roll: Role,
+    temperature: Role,
     clock: GnssClock,
 }
 
@@ -62,6 +75,7 @@ impl Roles {
             position: role(&config.position),
             rate_of_turn: role(&config.rate_of_turn),
             roll: role(&config.roll),
+            temperature: role(&config.temperature),
             // A recording's own time stamps rank behind every receiver.
             clock: GnssClock::new(config.position.len() + 1, stale_s),
         }
@@ -89,7 +103,7 @@ impl Roles {
 
     /// Applies the time that a recording gives a line: used when no receiver gives any.
     pub(crate) fn observe_recorded_time(&mut self, stamp: Timestamp) -> Option<Signal> {
-        self.set_clock(self.position.sources.len(), stamp)
+        self.set_clock(self.position.source_count(), stamp)
     }
 
     /// Returns the signals of an observation: none when its source has no role, or when a better
@@ -100,19 +114,20 @@ impl Roles {
             Reading::Compass { raw, .. } => single(
                 self.compass
                     .note_reading(seen, now)
-                    .then_some(Signal::Compass(raw)),
+                    .map(|_| Signal::Compass(raw)),
             ),
             Reading::Magnetic(heading) => {
-                let used = self.compass.note_reading(seen, now);
+                let used = self.compass.note_reading(seen, now).is_some();
                 let raw = CompassHeading::new(heading.degrees());
                 single(raw.filter(|_| used).map(Signal::Compass))
             }
             Reading::True(heading) => {
-                if self.gyro.note_reading(seen, now) {
-                    return single(Some(Signal::Gyro(heading)));
+                let reference = |source| ReferenceHeading { heading, source };
+                if let Some(source) = self.gyro.note_reading(seen, now) {
+                    return single(Some(Signal::Gyro(reference(source))));
                 }
-                let used = self.satellite.note_reading(seen, now);
-                single(used.then_some(Signal::Satellite(heading)))
+                let source = self.satellite.note_reading(seen, now);
+                single(source.map(|source| Signal::Satellite(reference(source))))
             }
             Reading::TrueNotValid => {
                 if self.gyro.note_invalid(seen, now) {
@@ -130,22 +145,34 @@ impl Roles {
                 let rank = self.position.device_rank(seen);
                 single(rank.and_then(|rank| self.set_clock(rank, stamp)))
             }
-            Reading::Speed { sog_kn } => {
-                let rank = self.position.device_rank(seen);
-                let used = rank.is_some_and(|rank| self.position.is_best(rank, now));
-                single(used.then_some(Signal::Speed(sog_kn)))
-            }
+            Reading::Speed { sog_kn } => single(
+                self.is_from_receiver(seen, now)
+                    .then_some(Signal::Speed(sog_kn)),
+            ),
+            Reading::Course(course) => single(
+                self.is_from_receiver(seen, now)
+                    .then_some(Signal::Course(course)),
+            ),
             Reading::RateOfTurn { deg_min } => {
                 let used = self.rate_of_turn.note_reading(seen, now);
-                single(used.then_some(Signal::RateOfTurn(deg_min)))
+                single(used.map(|_| Signal::RateOfTurn(deg_min)))
             }
-            Reading::Roll { deg } => single(
-                self.roll
+            Reading::Roll { deg } => {
+                single(self.roll.note_reading(seen, now).map(|_| Signal::Roll(deg)))
+            }
+            Reading::Temperature { celsius } => single(
+                self.temperature
                     .note_reading(seen, now)
-                    .then_some(Signal::Roll(deg)),
+                    .map(|_| Signal::Temperature(celsius)),
             ),
             Reading::Pitch { .. } => single(None),
         }
+    }
+
+    /// Returns whether a reading comes from the receiver whose position is used.
+    fn is_from_receiver(&self, seen: &Observation, now: Option<Timestamp>) -> bool {
+        let rank = self.position.device_rank(seen);
+        rank.is_some_and(|rank| self.position.is_best(rank, now))
     }
 
     fn fix(
@@ -160,7 +187,8 @@ impl Roles {
         };
         // Time first: the fix belongs to the time it carries.
         let time = time.and_then(|stamp| self.set_clock(rank, stamp));
-        if !self.position.note_reading(seen, self.clock.now()) {
+        let used = self.position.note_reading(seen, self.clock.now());
+        if used.is_none() {
             return single(time);
         }
         [
@@ -181,122 +209,6 @@ impl Roles {
 
 fn single(signal: Option<Signal>) -> [Option<Signal>; 3] {
     [signal, None, None]
-}
-
-/// Sources of one instrument, best first.
-#[derive(Debug)]
-struct Role {
-    sources: Vec<Source>,
-    stale_s: f64,
-}
-
-#[derive(Debug)]
-struct Source {
-    input: Option<Arc<str>>,
-    config: SourceConfig,
-    heard: Heard,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Heard {
-    Never,
-    /// Before GNSS time was known.
-    Timeless,
-    At(Timestamp),
-}
-
-impl Role {
-    fn new(sources: &[SourceConfig], stale_s: f64) -> Role {
-        let sources = sources.iter().map(|config| Source {
-            input: config
-                .input
-                .as_ref()
-                .map(|name| name.get_ref().as_str().into()),
-            config: config.clone(),
-            heard: Heard::Never,
-        });
-        Role {
-            sources: sources.collect(),
-            stale_s,
-        }
-    }
-
-    /// Records a reading of a source. Returns whether the source is in use.
-    fn note_reading(&mut self, seen: &Observation, now: Option<Timestamp>) -> bool {
-        let Some(rank) = self.rank(seen) else {
-            return false;
-        };
-        self.sources[rank].heard = now.map_or(Heard::Timeless, Heard::At);
-        self.is_best(rank, now)
-    }
-
-    /// Records that a source is invalid. Returns whether it was in use.
-    fn note_invalid(&mut self, seen: &Observation, now: Option<Timestamp>) -> bool {
-        let Some(rank) = self.rank(seen) else {
-            return false;
-        };
-        self.sources[rank].heard = Heard::Never;
-        self.is_best(rank, now)
-    }
-
-    fn is_best(&self, rank: usize, now: Option<Timestamp>) -> bool {
-        !self.sources[..rank]
-            .iter()
-            .any(|better| self.is_alive(better, now))
-    }
-
-    fn is_alive(&self, source: &Source, now: Option<Timestamp>) -> bool {
-        match (source.heard, now) {
-            (Heard::At(heard), Some(now)) => now.seconds_since(heard).abs() <= self.stale_s,
-            (Heard::Timeless, None) => true,
-            _ => false,
-        }
-    }
-
-    fn rank(&self, seen: &Observation) -> Option<usize> {
-        self.sources.iter().position(|source| source.matches(seen))
-    }
-
-    /// Returns the rank of the source on the same device: ZDA and VTG come from the receiver whose
-    /// position is used.
-    fn device_rank(&self, seen: &Observation) -> Option<usize> {
-        self.sources
-            .iter()
-            .position(|source| source.matches_device(seen))
-    }
-}
-
-impl Source {
-    fn matches(&self, seen: &Observation) -> bool {
-        if self
-            .config
-            .sentence
-            .is_some_and(|wanted| wanted != seen.sentence)
-        {
-            return false;
-        }
-        // Without a configured talker, the agent's own output is excluded: on a shared line a dead
-        // compass would live on as its echo.
-        if self.config.talker.is_none()
-            && seen.talker == AGENT_TALKER
-            && matches!(&seen.sentence, b"HDG" | b"THS")
-        {
-            return false;
-        }
-        // A magnetic heading is a raw one only where the configuration says so.
-        if matches!(seen.reading, Reading::Magnetic(_)) && !self.config.raw {
-            return false;
-        }
-        self.matches_device(seen)
-    }
-
-    fn matches_device(&self, seen: &Observation) -> bool {
-        self.config.matches_talker(seen.talker)
-            && self
-                .input
-                .as_ref()
-                .is_none_or(|input| **input == *seen.input)
-    }
 }
 
 #[cfg(test)]
@@ -320,6 +232,13 @@ mod tests {
             talker: [id[0], id[1]],
             sentence: [id[2], id[3], id[4]],
             reading,
+        }
+    }
+
+    fn reference(degrees: f64, source: &str) -> ReferenceHeading {
+        ReferenceHeading {
+            heading: TrueHeading::new(degrees).unwrap(),
+            source: SourceId::from_name(source),
         }
     }
 
@@ -356,13 +275,13 @@ position = [{ input = "a", talker = "GP", sentence = "RMC" }]
             seen("a", "HETHS", heading(10.0)),
             seen("b", "HEHDT", heading(11.0)),
         );
-        let gyro = |degrees| Some(Gyro(TrueHeading::new(degrees).unwrap()));
+        let gyro = |degrees, source| Some(Gyro(reference(degrees, source)));
         roles.observe(&seen("a", "GPRMC", fix(0)));
-        assert_eq!(first(&mut roles, &main), gyro(10.0));
+        assert_eq!(first(&mut roles, &main), gyro(10.0, "a HE THS"));
         assert_eq!(first(&mut roles, &spare), None);
         roles.observe(&seen("a", "GPRMC", fix(16)));
-        assert_eq!(first(&mut roles, &spare), gyro(11.0));
-        assert_eq!(first(&mut roles, &main), gyro(10.0));
+        assert_eq!(first(&mut roles, &spare), gyro(11.0, "b HDT"));
+        assert_eq!(first(&mut roles, &main), gyro(10.0, "a HE THS"));
         assert_eq!(first(&mut roles, &spare), None);
     }
 
@@ -372,7 +291,7 @@ position = [{ input = "a", talker = "GP", sentence = "RMC" }]
         let valid = seen("a", "GPTHS", heading(10.0));
         assert_eq!(
             first(&mut roles, &valid),
-            Some(Satellite(TrueHeading::new(10.0).unwrap()))
+            Some(Satellite(reference(10.0, "a GP")))
         );
         let lost = seen("a", "GPTHS", Reading::TrueNotValid);
         assert_eq!(first(&mut roles, &lost), Some(SatelliteInvalid));
@@ -400,6 +319,31 @@ position = [{ input = "a", talker = "GP", sentence = "RMC" }]
             first(&mut roles, &seen("b", "GPZDA", Reading::Time(at(1)))),
             None
         );
+    }
+
+    #[test]
+    fn a_course_comes_from_the_receiver_whose_position_is_used() {
+        let mut roles = roles(TWO_GYROS);
+        let course = CourseOverGround::new(91.0).unwrap();
+        roles.observe(&seen("a", "GPRMC", fix(0)));
+        let of = |input, id| seen(input, id, Reading::Course(course));
+        assert_eq!(
+            first(&mut roles, &of("a", "GPVTG")),
+            Some(Signal::Course(course))
+        );
+        assert_eq!(first(&mut roles, &of("b", "GPVTG")), None);
+    }
+
+    #[test]
+    fn a_temperature_comes_from_its_role_alone() {
+        let warm = |id| seen("a", id, Reading::Temperature { celsius: 21.5 });
+        assert_eq!(first(&mut roles(TWO_GYROS), &warm("WIMTA")), None);
+        let mut roles = roles(r#"temperature = [{ input = "a", sentence = "MTA" }]"#);
+        assert_eq!(
+            first(&mut roles, &warm("WIMTA")),
+            Some(Signal::Temperature(21.5))
+        );
+        assert_eq!(first(&mut roles, &warm("WIXDR")), None);
     }
 
     #[test]

@@ -1,10 +1,12 @@
-//! The local page: one HTML file, the status as JSON, the hold buttons, and the logbook's form.
+//! The local page: one HTML file, the status as JSON, the hold buttons, and the forms of logbook and
+//! azimuths.
 //!
 //! For the vessel's own network, without a login. A foreign web site that an officer has open must
 //! not be able to press a button. Every change therefore needs a header that no form can send, and
 //! requests under names that resolve elsewhere are refused.
 
 mod acknowledgements;
+mod azimuths;
 mod exclusions;
 mod http_limits;
 mod reports;
@@ -20,7 +22,7 @@ use crate::status::Status;
 use acknowledgements::acknowledge;
 use anyhow::Context;
 use axum::extract::{DefaultBodyLimit, State};
-use axum::http::header::CONTENT_SECURITY_POLICY;
+use axum::http::header::{CONTENT_SECURITY_POLICY, CONTENT_TYPE};
 use axum::middleware;
 use axum::response::{Html, IntoResponse};
 use axum::routing::{get, post, put};
@@ -70,6 +72,9 @@ pub(crate) fn router(page: PageState) -> Router {
         .route("/api/status", get(status))
         .route("/api/hold", post(set_exclusion))
         .route("/api/alert/acknowledge", post(acknowledge))
+        .route("/azimuths.js", get(azimuth_script))
+        .route("/api/azimuths", get(azimuths::list_azimuths))
+        .route("/api/azimuths/{id}", put(azimuths::put_azimuth))
         .route("/api/reports", get(reports::list_reports))
         .route("/api/reports/{id}", put(reports::put_report))
         .layer(DefaultBodyLimit::max(MAX_REQUEST_BYTES))
@@ -78,11 +83,18 @@ pub(crate) fn router(page: PageState) -> Router {
 }
 
 async fn show() -> impl IntoResponse {
-    let policy = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
+    let policy = "default-src 'none'; script-src 'self' 'unsafe-inline'; style-src 'unsafe-inline'; \
                   connect-src 'self'; form-action 'none'; frame-ancestors 'none'";
     (
         [(CONTENT_SECURITY_POLICY, policy)],
         Html(include_str!("page.html")),
+    )
+}
+
+async fn azimuth_script() -> impl IntoResponse {
+    (
+        [(CONTENT_TYPE, "text/javascript; charset=utf-8")],
+        include_str!("azimuths.js"),
     )
 }
 
@@ -183,7 +195,7 @@ pub(crate) mod tests {
 
     #[test]
     fn the_page_asks_nothing_of_the_outside_world() {
-        let html = include_str!("page.html");
+        let html = concat!(include_str!("page.html"), include_str!("azimuths.js"));
         for outside in ["http://", "https://", "//cdn", "@import", "<link"] {
             assert!(!html.contains(outside), "{outside}");
         }

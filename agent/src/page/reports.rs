@@ -10,6 +10,7 @@ use crate::spool::{SaveReportError, StoredReport};
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode};
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::logbook::{Report, ReportError, reporter};
 use serde::Deserialize;
 use uuid::Uuid;
@@ -46,9 +47,7 @@ pub(super) async fn put_report(
     Json(written): Json<ReportForm>,
 ) -> Result<Json<StoredReport>, Refusal> {
     require_guard_header(&headers).map_err(|(status, why)| (status, why.to_owned()))?;
-    // Either clock may lag far behind; neither is ahead without reason.
-    let ship_time = page.status.borrow().ship_time;
-    let now = ship_time.map_or_else(clock::now, |time| time.max(clock::now()));
+    let now = ship_now(&page);
     let reporter = reporter(&written.reporter).map_err(|error| refuse_invalid(&error))?;
     let mut report = written
         .report
@@ -68,11 +67,17 @@ pub(super) async fn put_report(
     Ok(Json(stored))
 }
 
-fn refuse_invalid(error: &ReportError) -> Refusal {
+/// Returns the time on board. Either clock may lag far behind; neither is ahead without reason.
+pub(super) fn ship_now(page: &PageState) -> Timestamp {
+    let ship_time = page.status.borrow().ship_time;
+    ship_time.map_or_else(clock::now, |time| time.max(clock::now()))
+}
+
+pub(super) fn refuse_invalid(error: &ReportError) -> Refusal {
     (StatusCode::UNPROCESSABLE_ENTITY, error.to_string())
 }
 
-fn refuse_unsaved(error: &SaveReportError) -> Refusal {
+pub(super) fn refuse_unsaved(error: &SaveReportError) -> Refusal {
     let status = match error {
         SaveReportError::Withdrawn => StatusCode::CONFLICT,
         SaveReportError::TooMany => StatusCode::INSUFFICIENT_STORAGE,

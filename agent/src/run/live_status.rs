@@ -19,6 +19,7 @@ impl Agent {
         status.heading = heading;
         status.card = card;
         status.alert = self.alert_monitor.record().map(AlertRecord::status);
+        status.position = Latest::within(readings.position, stale, now);
         status.gyro_deg = Latest::within(readings.gyro, stale, now);
         status.satellite_deg = Latest::within(readings.satellite, stale, now);
         status.sog_kn = Latest::within(readings.sog_kn, stale, now);

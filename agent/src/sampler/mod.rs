@@ -13,11 +13,14 @@
 //! passed. The limit on swinging is that of Basterretxea-Iribar, Sotés & Uriarte 2016, J.
 //! Navigation.
 
+mod details;
 mod exclusion;
 mod outcome;
 mod sample_builder;
 mod track;
 
+#[cfg(test)]
+pub(crate) use details::Details;
 pub(crate) use exclusion::Exclusion;
 pub(crate) use outcome::{Outcome, Tally};
 pub(crate) use sample_builder::{WINDOW_S, Window, median};
@@ -29,6 +32,7 @@ use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::Settings;
+use details::DetailReadings;
 use sample_builder::SampleBuilder;
 use track::{HeadingSpan, HeadingTrack};
 
@@ -56,6 +60,7 @@ pub(crate) struct Sampler {
     gyro: HeadingTrack,
     satellite: HeadingTrack,
     rate_of_turn: (f64, u32),
+    details: DetailReadings,
     position: Option<LastValue<Position>>,
     speed: Option<LastValue<f64>>,
     turns: TurnTracker,
@@ -87,6 +92,7 @@ impl Sampler {
             gyro: HeadingTrack::default(),
             satellite: HeadingTrack::default(),
             rate_of_turn: (0.0, 0),
+            details: DetailReadings::default(),
             position: None,
             speed: None,
             turns: TurnTracker::default(),
@@ -113,9 +119,11 @@ impl Sampler {
             Signal::Time(now) => self.advance(window_of(now)),
             Signal::Jump(now) => self.jump(window_of(now)),
             Signal::Compass(heading) => self.compass.add(heading.degrees()),
-            Signal::Gyro(heading) => self.gyro.add(heading.degrees()),
+            Signal::Gyro(from) => self.gyro.add_from(from.source, from.heading.degrees()),
             Signal::GyroInvalid => self.gyro.invalidate(),
-            Signal::Satellite(heading) => self.satellite.add(heading.degrees()),
+            Signal::Satellite(from) => {
+                self.satellite.add_from(from.source, from.heading.degrees());
+            }
             Signal::SatelliteInvalid => self.satellite.invalidate(),
             Signal::Position(position) => self.position = self.last_value(position),
             Signal::Speed(knots) if SPEED_KN.contains(&knots) => {
@@ -124,7 +132,10 @@ impl Sampler {
             Signal::RateOfTurn(rate) if RATE_OF_TURN_DEG_MIN.contains(&rate) => {
                 self.rate_of_turn = (self.rate_of_turn.0 + rate, self.rate_of_turn.1 + 1);
             }
-            Signal::Speed(_) | Signal::RateOfTurn(_) | Signal::Roll(_) => {}
+            Signal::Course(course) => self.details.add_course(course),
+            Signal::Roll(degrees) => self.details.add_roll(degrees),
+            Signal::Temperature(celsius) => self.details.add_temperature(celsius),
+            Signal::Speed(_) | Signal::RateOfTurn(_) => {}
         }
     }
 
@@ -195,6 +206,7 @@ impl Sampler {
         self.gyro.forget();
         self.satellite.forget();
         self.rate_of_turn = (0.0, 0);
+        self.details = DetailReadings::default();
         self.position = None;
         self.speed = None;
         self.turns = TurnTracker::default();
@@ -218,6 +230,7 @@ impl Sampler {
         self.gyro.close();
         self.satellite.close();
         self.rate_of_turn = (0.0, 0);
+        self.details = DetailReadings::default();
     }
 
     /// Returns the means of the window, or the first reason to reject it.
@@ -264,6 +277,9 @@ impl Sampler {
             position,
             sog_kn,
             rate_of_turn_deg_min: rate,
+            details: self.details.means(),
+            gyro_source: gyro.and(self.gyro.source()),
+            satellite_source: satellite.and(self.satellite.source()),
         })
     }
 

@@ -4,10 +4,12 @@
 //! that drops out for some windows then does not shift the mean of the others, and north needs no
 //! special case.
 
-use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading, wrap_180};
 use binnacle_compass::position::Position;
-use binnacle_compass::sample::Sample;
+use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_compass::time::Timestamp;
+
+use super::details::{Details, DirectionMean, Roll};
 
 /// Seconds per window.
 pub(crate) const WINDOW_S: i64 = 10;
@@ -33,6 +35,11 @@ pub(crate) struct Window {
     pub(crate) position: Position,
     pub(crate) sog_kn: f64,
     pub(crate) rate_of_turn_deg_min: Option<f64>,
+    pub(crate) details: Details,
+    /// Source of the gyro heading.
+    pub(crate) gyro_source: Option<SourceId>,
+    /// Source of the satellite-compass heading.
+    pub(crate) satellite_source: Option<SourceId>,
 }
 
 /// Settled windows of a sample in order of time, all on one heading.
@@ -79,6 +86,16 @@ impl SampleBuilder {
             && self.windows.len() < usize::from(u16::MAX)
             && window.index - last.index <= MAX_GAP_WINDOWS
             && wrap_180(window.compass_deg - first.compass_deg).abs() <= MAX_HEADING_CHANGE_DEG
+            && !self.changes_source(window)
+    }
+
+    /// Returns whether a reference of the window is another instrument than before.
+    fn changes_source(&self, window: &Window) -> bool {
+        let differs = |of: fn(&Window) -> Option<SourceId>| {
+            let before = first_of(&self.windows, of);
+            before.zip(of(window)).is_some_and(|(a, b)| a != b)
+        };
+        differs(|w| w.gyro_source) || differs(|w| w.satellite_source)
     }
 }
 
@@ -94,13 +111,21 @@ fn build_sample(windows: &[Window]) -> Option<Sample> {
     };
     let time = Timestamp::from_micros(middle_s * 1_000_000).ok()?;
     let position = nearest_window(&kept, middle_s / WINDOW_S)?.position;
+    let (gyro, satellite) = (reference(|w| w.gyro_deg), reference(|w| w.satellite_deg));
+    let roll = mean_roll(&kept);
     Some(Sample {
-        gyro: reference(|w| w.gyro_deg),
-        satellite: reference(|w| w.satellite_deg),
+        gyro,
+        satellite,
         sog_kn: mean(kept.iter().map(|w| w.sog_kn)),
         rate_of_turn_deg_min: mean(kept.iter().filter_map(|w| w.rate_of_turn_deg_min)),
         spread_deg: spread(&kept),
         windows: kept.len() as u16,
+        cog: mean_course(&kept),
+        roll_deg: roll.map(|roll| roll.mean_deg),
+        roll_spread_deg: roll.map(spread_of_roll),
+        temperature_c: mean(kept.iter().filter_map(|w| w.details.temperature_c)),
+        gyro_source: gyro.and_then(|_| first_of(&kept, |w| w.gyro_source)),
+        satellite_source: satellite.and_then(|_| first_of(&kept, |w| w.satellite_source)),
         ..Sample::new(time, position, CompassHeading::new(compass_deg)?)
     })
 }
@@ -175,6 +200,42 @@ fn spread(windows: &[Window]) -> Option<f64> {
     Some((squares.sum::<f64>() / (differences.len() - 1) as f64).sqrt())
 }
 
+fn first_of(windows: &[Window], of: fn(&Window) -> Option<SourceId>) -> Option<SourceId> {
+    windows.iter().find_map(of)
+}
+
+/// Returns the mean course, if at least half of the windows have one.
+fn mean_course(windows: &[Window]) -> Option<CourseOverGround> {
+    let courses: Vec<_> = windows.iter().filter_map(|w| w.details.cog).collect();
+    if courses.len() * 2 < windows.len() {
+        return None;
+    }
+    let mut mean = DirectionMean::default();
+    for course in courses {
+        mean.add(course);
+    }
+    mean.mean()
+}
+
+/// Returns the mean roll, if at least half of the windows have one.
+fn mean_roll(windows: &[Window]) -> Option<Roll> {
+    let rolls: Vec<_> = windows.iter().filter_map(|w| w.details.roll).collect();
+    if rolls.len() * 2 < windows.len() {
+        return None;
+    }
+    Some(Roll {
+        mean_deg: mean(rolls.iter().map(|roll| roll.mean_deg))?,
+        mean_square_deg2: mean(rolls.iter().map(|roll| roll.mean_square_deg2))?,
+    })
+}
+
+/// Returns the standard deviation of all readings of roll. Rounding may make the variance of a
+/// still ship negative.
+fn spread_of_roll(roll: Roll) -> f64 {
+    let variance = roll.mean_square_deg2 - roll.mean_deg * roll.mean_deg;
+    variance.max(0.0).sqrt()
+}
+
 fn nearest_window(windows: &[Window], index: i64) -> Option<&Window> {
     windows.iter().min_by_key(|w| (w.index - index).abs())
 }
@@ -207,6 +268,9 @@ mod tests {
             position: Position::new(43.0, index as f64 * 1e-3).unwrap(),
             sog_kn: 12.0,
             rate_of_turn_deg_min: Some(0.5),
+            details: Details::default(),
+            gyro_source: None,
+            satellite_source: None,
         }
     }
 

@@ -1,7 +1,9 @@
 //! The sampler on small simulated voyages.
 
 use super::*;
-use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use crate::instruments::ReferenceHeading;
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
+use binnacle_compass::sample::SourceId;
 use proptest::prelude::*;
 
 const START_S: i64 = 1_700_000_000;
@@ -19,7 +21,14 @@ fn compass(degrees: f64) -> Signal {
 }
 
 fn gyro(degrees: f64) -> Signal {
-    Signal::Gyro(TrueHeading::new(degrees).unwrap())
+    Signal::Gyro(reference(degrees, "gyro 1"))
+}
+
+fn reference(degrees: f64, source: &str) -> ReferenceHeading {
+    ReferenceHeading {
+        heading: TrueHeading::new(degrees).unwrap(),
+        source: SourceId::from_name(source),
+    }
 }
 
 /// One second of a vessel that steers by gyro and whose compass reads 3° less.
@@ -197,7 +206,7 @@ fn a_satellite_compass_that_says_invalid_is_absent() {
     let mut sampler = sampler();
     for time in 0..601 {
         feed(&mut sampler, second(time, 90.0));
-        sampler.apply(Signal::Satellite(TrueHeading::new(170.0).unwrap()));
+        sampler.apply(Signal::Satellite(reference(170.0, "satellite")));
         sampler.apply(Signal::SatelliteInvalid);
     }
     let (samples, _) = finished(sampler);
@@ -226,6 +235,71 @@ fn windows_without_a_time_stamp_are_counted_and_end_the_stretch() {
     let (samples, tally) = finished(sampler);
     assert_eq!(tally.count(Outcome::NoTime), 30);
     assert_eq!(samples.len(), 2);
+}
+
+fn course(degrees: f64) -> Signal {
+    Signal::Course(CourseOverGround::new(degrees).unwrap())
+}
+
+#[test]
+fn course_roll_and_temperature_come_with_the_headings() {
+    let mut sampler = sampler();
+    for time in 0..791 {
+        feed(&mut sampler, second(time, 0.0));
+        let phase = std::f64::consts::TAU * time as f64 / 10.0;
+        feed(
+            &mut sampler,
+            [
+                course(if time % 2 == 0 { 359.0 } else { 3.0 }),
+                Signal::Roll(1.5 + 4.0 * phase.sin()),
+                Signal::Roll(f64::NAN),
+                Signal::Temperature(if time < 490 { 20.0 } else { 21.0 }),
+            ],
+        );
+    }
+    let (samples, _) = finished(sampler);
+    let found = &samples[0];
+    assert_eq!(found.windows, 60);
+    assert!((found.cog.unwrap().degrees() - 1.0).abs() < 1e-6);
+    assert!((found.roll_deg.unwrap() - 1.5).abs() < 1e-6);
+    assert!((found.roll_spread_deg.unwrap() - 4.0 / 2_f64.sqrt()).abs() < 1e-6);
+    assert!((found.temperature_c.unwrap() - 20.5).abs() < 1e-6);
+    assert_eq!(found.gyro_source, Some(SourceId::from_name("gyro 1")));
+    assert_eq!(found.satellite_source, None);
+}
+
+#[test]
+fn what_no_instrument_gives_is_absent() {
+    let mut sampler = sampler();
+    sail(&mut sampler, 0..601, |_| 90.0);
+    let (samples, _) = finished(sampler);
+    let found = &samples[0];
+    assert_eq!((found.cog, found.temperature_c), (None, None));
+    assert_eq!((found.roll_deg, found.roll_spread_deg), (None, None));
+}
+
+#[test]
+fn a_sample_ends_where_the_ship_goes_over_to_another_gyro() {
+    let mut sampler = sampler();
+    for time in 0..901 {
+        let mut signals = second(time, 90.0);
+        if time >= 603 {
+            signals.pop();
+            signals.push(Signal::Gyro(reference(91.0, "gyro 2")));
+        }
+        feed(&mut sampler, signals);
+    }
+    let (samples, tally) = finished(sampler);
+    assert_eq!(tally.count(Outcome::Accepted), 71);
+    let found: Vec<_> = samples
+        .iter()
+        .map(|s| (s.windows, s.gyro.unwrap().degrees(), s.gyro_source))
+        .collect();
+    let source = |name| Some(SourceId::from_name(name));
+    assert_eq!(
+        found,
+        [(41, 90.0, source("gyro 1")), (30, 91.0, source("gyro 2"))]
+    );
 }
 
 #[test]
@@ -264,6 +338,9 @@ fn any_signal() -> impl Strategy<Value = Signal> {
         Just(Signal::Position(place())),
         any::<f64>().prop_map(Signal::Speed),
         any::<f64>().prop_map(Signal::RateOfTurn),
+        (0.0..360.0).prop_map(course),
+        any::<f64>().prop_map(Signal::Roll),
+        any::<f64>().prop_map(Signal::Temperature),
     ]
 }
 
@@ -278,6 +355,8 @@ proptest! {
         for sample in samples {
             prop_assert!(sample.windows >= 1);
             prop_assert!(sample.gyro.is_some() || sample.satellite.is_some());
+            prop_assert_eq!(sample.gyro.is_some(), sample.gyro_source.is_some());
+            prop_assert_eq!(binnacle_wire::codec::check(&sample, 0), Ok(()));
         }
     }
 

@@ -1,6 +1,7 @@
 //! Heading of one instrument over the windows, unwound across north.
 
 use binnacle_compass::angle::wrap_180;
+use binnacle_compass::sample::SourceId;
 
 /// Heading in one window.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +26,7 @@ pub(super) struct HeadingTrack {
     high: f64,
     readings: u32,
     invalid: bool,
+    source: Option<SourceId>,
     earlier: [Option<HeadingSpan>; 2],
 }
 
@@ -43,6 +45,21 @@ impl HeadingTrack {
         self.low = self.low.min(unwound);
         self.high = self.high.max(unwound);
         self.readings += 1;
+    }
+
+    /// Adds a heading of a named source. Another source begins anew: headings of two
+    /// instruments are never mixed.
+    pub(super) fn add_from(&mut self, source: SourceId, degrees: f64) {
+        if self.source != Some(source) {
+            self.forget();
+            self.source = Some(source);
+        }
+        self.add(degrees);
+    }
+
+    /// Returns the source of the readings.
+    pub(super) fn source(&self) -> Option<SourceId> {
+        self.source
     }
 
     /// Marks the window as invalid: the instrument reported itself as not to be trusted.
@@ -119,6 +136,21 @@ mod tests {
         }
         track.add(20.0);
         assert!(track.swing_deg() < 1e-9);
+    }
+
+    #[test]
+    fn another_source_begins_anew() {
+        let mut track = HeadingTrack::default();
+        let [first, second] = ["gyro 1", "gyro 2"].map(SourceId::from_name);
+        track.add_from(first, 10.0);
+        track.close();
+        track.add_from(first, 10.0);
+        track.add_from(second, 20.0);
+        track.add_from(second, 22.0);
+        let span = track.span().unwrap();
+        assert_eq!((track.source(), span.readings), (Some(second), 2));
+        assert!((span.mean - 21.0).abs() < 1e-9);
+        assert_eq!(track.moved_deg(), None);
     }
 
     #[test]

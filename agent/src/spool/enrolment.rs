@@ -3,6 +3,7 @@
 use super::database::{Spool, get, put};
 use super::identity::Identity;
 use super::keys::{ALERT, IDENTITY, MODEL, SETTINGS, WITHDRAWN};
+use super::reports::azimuths;
 use super::{batches, reports};
 
 impl Spool {
@@ -15,6 +16,7 @@ impl Spool {
             && before.vessel_name != identity.vessel_name
         {
             reports::refuse_waiting(&mut tx, &before.vessel_name).await?;
+            azimuths::refuse_waiting(&mut tx, &before.vessel_name).await?;
         }
         if before.is_some_and(|before| !before.is_same_compass(identity)) {
             sqlx::query("DELETE FROM state WHERE name IN ($1, $2, $3, $4)")

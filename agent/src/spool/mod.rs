@@ -12,7 +12,7 @@
 //!   then after a month or when the disk limit is reached. Its number, size and checksum stay on
 //!   record. Until then it is sent again if the server lost it.
 //! - An alert is stored together with the batch that carries it to the server.
-//! - An officer's report is here until the server has it.
+//! - An officer's report or azimuth is here until the server has it.
 //! - The rows are the only record of progress: no separate ledger could disagree with them.
 //! - Not stored yet: samples of the last second or of the last [`crate::run::SAMPLES_PER_COMMIT`],
 //!   whichever is less, and the open sample of at most ten minutes.
@@ -40,6 +40,7 @@ pub(crate) use account::{BudgetAccount, REQUEST_BYTES};
 pub(crate) use batches::SealedBatch;
 pub(crate) use database::Spool;
 pub(crate) use identity::Identity;
+pub(crate) use reports::azimuths::SpooledAzimuth;
 pub(crate) use reports::{ReportState, SaveReportError, StoredReport};
 pub(crate) use seal::{Pending, Seal};
 pub(crate) use status::SpoolStatus;

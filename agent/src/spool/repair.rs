@@ -2,7 +2,7 @@
 //! must not have to wait in port for somebody to delete a file.
 
 use super::database::{Spool, connect, create_private};
-use super::reports;
+use super::reports::{self, azimuths};
 use super::seal::insert_batch;
 use anyhow::Context;
 use sqlx::{FromRow, Row, SqlitePool};
@@ -162,12 +162,14 @@ async fn carry_over(aside: &Path, spool: &Spool) {
         tracing::error!(%error, "the batches carried over cannot be marked as tried");
     }
     let reports = carry_reports_over(&damaged, spool).await;
+    let azimuths = carry_azimuths_over(&damaged, spool).await;
     damaged.close().await;
     tracing::warn!(
         state,
         samples,
         batches,
         reports,
+        azimuths,
         "carried over from the damaged spool"
     );
 }
@@ -183,6 +185,21 @@ async fn carry_reports_over(damaged: &SqlitePool, spool: &Spool) -> usize {
             continue;
         };
         carried += usize::from(reports::put(&mut connection, &report).await.is_ok());
+    }
+    carried
+}
+
+async fn carry_azimuths_over(damaged: &SqlitePool, spool: &Spool) -> usize {
+    let mut carried = 0;
+    let all = "SELECT id, azimuth, written_micros, standing, problem FROM azimuths ORDER BY number";
+    for row in rows(damaged, all).await {
+        let Some(azimuth) = reports::Row::from_row(&row).ok().and_then(azimuths::read) else {
+            continue;
+        };
+        let Ok(mut connection) = spool.pool.acquire().await else {
+            continue;
+        };
+        carried += usize::from(azimuths::put(&mut connection, &azimuth).await.is_ok());
     }
     carried
 }

@@ -44,3 +44,11 @@ CREATE TABLE IF NOT EXISTS reports (
     standing       TEXT NOT NULL CHECK (standing IN ('waiting', 'ashore', 'refused')),
     problem        TEXT
 );
+CREATE TABLE IF NOT EXISTS azimuths (
+    number         INTEGER PRIMARY KEY,
+    id             TEXT NOT NULL UNIQUE,
+    azimuth        TEXT NOT NULL,
+    written_micros BIGINT NOT NULL,
+    standing       TEXT NOT NULL CHECK (standing IN ('waiting', 'ashore', 'refused')),
+    problem        TEXT
+);

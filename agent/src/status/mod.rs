@@ -13,6 +13,7 @@ use crate::sampler::Exclusion;
 use crate::spool::{BudgetAccount, SpoolStatus};
 use crate::uplink::LinkStatus;
 use binnacle_compass::angle::TrueHeading;
+use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
@@ -35,6 +36,9 @@ pub(crate) struct Status {
     /// Reason why samples cannot be stored.
     #[serde(default)]
     pub(crate) storage_problem: Option<String>,
+    /// Position of the vessel, unless it is old.
+    #[serde(default)]
+    pub(crate) position: Option<Position>,
     pub(crate) heading: CorrectedHeading,
     /// Last alert of the agent itself, open or closed.
     #[serde(default)]

@@ -9,12 +9,13 @@ use super::request_error::{
     PROBLEM_TYPE_PATH, Problem, RequestError, classify_problem, foreign_response, link_error,
 };
 use crate::config::ConnectionPolicy;
-use crate::spool::{Identity, SealedBatch, StoredReport};
+use crate::spool::{Identity, SealedBatch, SpooledAzimuth, StoredReport};
 use anyhow::Context;
 use binnacle_wire::batch::StreamId;
 use binnacle_wire::downlink::{self, FORM, ONCE, card_tag};
 use binnacle_wire::messages::{
-    Downlink, EnrolAnswer, EnrolRequest, LogbookAnswer, NewToken, OpenStreamAnswer,
+    BoardAzimuthAnswer, Downlink, EnrolAnswer, EnrolRequest, LogbookAnswer, NewToken,
+    OpenStreamAnswer,
 };
 use reqwest::header::RETRY_AFTER;
 use reqwest::{RequestBuilder, Response, StatusCode, redirect};
@@ -185,6 +186,17 @@ impl ServerClient {
         let url = format!("{}/api/v1/agents/logbook/{}", identity.server, report.id);
         let request = self.http.put(url).bearer_auth(&identity.token);
         self.send(request.json(&report.sent)).await
+    }
+
+    /// Sends an azimuth.
+    pub(crate) async fn put_azimuth(
+        &self,
+        identity: &Identity,
+        azimuth: &SpooledAzimuth,
+    ) -> Result<BoardAzimuthAnswer, RequestError> {
+        let url = format!("{}/api/v1/agents/azimuths/{}", identity.server, azimuth.id);
+        let request = self.http.put(url).bearer_auth(&identity.token);
+        self.send(request.json(&azimuth.sent)).await
     }
 
     /// Polls for a new model and settings.

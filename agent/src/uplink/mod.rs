@@ -31,6 +31,7 @@ pub(crate) use status::{LinkState, LinkStatus, Publisher};
 use backoff::Backoff;
 use budget::{Budget, ClockReading, Priority};
 use client::KnownVersions;
+use reports::ReportPauses;
 use request::BatchContext;
 
 use crate::spool::{Identity, Spool};
@@ -66,8 +67,8 @@ pub(crate) struct Uplink {
     pub(crate) token: Option<String>,
     /// Last token that the server did not know.
     pub(crate) refused_token: Option<String>,
-    /// End of the pause for a server that knows no reports.
-    pub(crate) reports_paused_until: Option<Instant>,
+    /// Pauses for a server that does not know all reports.
+    pub(crate) report_pauses: ReportPauses,
     /// Notified when a batch has been sealed or a report was written.
     pub(crate) sealed: Arc<Notify>,
     /// Notified when evidence of an alert has been sealed.
@@ -241,7 +242,7 @@ impl Uplink {
             .settings
             .send_replace(self.spool.settings().await?);
         self.token = Some(identity.token.clone());
-        self.reports_paused_until = None;
+        self.report_pauses = ReportPauses::default();
         Ok(())
     }
 

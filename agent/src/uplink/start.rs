@@ -1,6 +1,6 @@
 //! Start of the uplink, and its handle for the rest of the agent.
 
-use super::{Backoff, Budget, LinkStatus, Publisher, ServerClient, Uplink};
+use super::{Backoff, Budget, LinkStatus, Publisher, ReportPauses, ServerClient, Uplink};
 use crate::config::UplinkConfig;
 use crate::spool::Spool;
 use binnacle_compass::time::Timestamp;
@@ -76,7 +76,7 @@ pub(crate) async fn prepare(
         publisher,
         keeps_connection: plan.keeps_connection(),
         exchange_open: false,
-        reports_paused_until: None,
+        report_pauses: ReportPauses::default(),
         sealed: uplink_handle.sealed.clone(),
         urgent: uplink_handle.urgent.clone(),
         rng: StdRng::from_rng(&mut rand::rng()),

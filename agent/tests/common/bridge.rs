@@ -1,7 +1,7 @@
 //! Instruments of a vessel that steers four courses in turn, an hour each, and whose compass reads
 //! 3° less than the gyro.
 
-use binnacle_nmea::sentence::{Hdg, Position, Rmc, Rot, Ths, ThsMode};
+use binnacle_nmea::sentence::{Hdg, Position, Rmc, Rot, Ths, ThsMode, Xdr};
 use binnacle_nmea::time::from_unix_micros;
 use binnacle_nmea::{Data, Sentence, write};
 use std::net::SocketAddr;
@@ -13,6 +13,12 @@ use tokio::sync::watch;
 pub(crate) const START_S: i64 = 1_788_220_800;
 /// Difference by which the compass reads less than the gyro.
 pub(crate) const LEAD_DEG: f64 = 3.0;
+/// Difference by which the course over ground is more than the heading.
+pub(crate) const DRIFT_DEG: f64 = 2.0;
+/// Mean of the roll, its standard deviation, and the temperature of the air.
+pub(crate) const LIST_DEG: f64 = -0.6;
+pub(crate) const ROLL_DEG: f64 = 1.5;
+pub(crate) const AIR_C: f64 = 18.0;
 
 /// All sentences of one second.
 pub(crate) fn second(offset_s: i64) -> Vec<u8> {
@@ -38,6 +44,7 @@ fn second_with(offset_s: i64, lead_deg: f64) -> Vec<u8> {
                 lon_deg_east: -3.0,
             }),
             sog_kn: Some(12.0),
+            cog_deg_true: Some(heading + DRIFT_DEG),
             ..Rmc::default()
         })),
     );
@@ -53,6 +60,15 @@ fn second_with(offset_s: i64, lead_deg: f64) -> Vec<u8> {
         Data::Ths(Ths {
             heading_deg_true: Some(heading),
             mode: ThsMode::Autonomous,
+        }),
+    );
+    let roll = if offset_s % 2 == 0 { 1.0 } else { -1.0 };
+    say(
+        b"II",
+        Data::Xdr(Xdr {
+            roll_deg_starboard_down: Some(LIST_DEG + ROLL_DEG * roll),
+            air_temperature_c: Some(AIR_C),
+            ..Xdr::default()
         }),
     );
     say(

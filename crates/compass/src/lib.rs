@@ -1,5 +1,5 @@
 //! Shared vocabulary and physics: angles, time and place, the earth's field, the deviation
-//! of a ship's compass, and the input and result of an analysis.
+//! of a ship's compass, its error by the sun, and the input and result of an analysis.
 //!
 //! Pure: no input or output, no clock, no randomness. Every function depends on its
 //! arguments alone, so an analysis can be repeated to the byte.
@@ -22,6 +22,8 @@ pub mod ship;
 
 pub mod deviation;
 pub mod field;
+
+pub mod azimuth;
 
 pub mod coverage;
 pub mod logbook;

@@ -4,6 +4,16 @@ use crate::angle::{CompassHeading, CourseOverGround, TrueHeading};
 use crate::position::Position;
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
+
+/// Rate of turn that a sample may have, degrees a minute.
+pub const RATE_OF_TURN_RANGE_DEG_MIN: RangeInclusive<f64> = -3600.0..=3600.0;
+/// Mean roll that a sample may have, degrees.
+pub const ROLL_RANGE_DEG: RangeInclusive<f64> = -90.0..=90.0;
+/// Standard deviation of roll that a sample may have, degrees.
+pub const ROLL_SPREAD_RANGE_DEG: RangeInclusive<f64> = 0.0..=90.0;
+/// Temperature that a sample may have, degrees Celsius.
+pub const TEMPERATURE_RANGE_C: RangeInclusive<f64> = -100.0..=100.0;
 
 /// The mean of up to ten minutes of settled ten-second windows on one heading.
 ///

@@ -1,6 +1,6 @@
 //! Instants in UTC, to the microsecond.
 
-use chrono::{DateTime, Datelike, NaiveDateTime, SecondsFormat, TimeZone, Utc};
+use chrono::{DateTime, Datelike, NaiveDate, NaiveDateTime, SecondsFormat, TimeZone, Utc};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -21,6 +21,9 @@ pub enum TimestampError {
     /// The text has no time zone and is valid otherwise.
     #[error("{0:?} has no time zone; write Z for UTC or an offset such as +01:00")]
     NoZone(String),
+    /// The text is a date alone.
+    #[error("{0:?} has no time of day; write it as in 2026-12-01T08:00:00Z")]
+    NoTimeOfDay(String),
     /// The text is not RFC 3339.
     #[error("{0:?} is not an RFC 3339 time such as 2026-12-01T08:00:00Z")]
     NotRfc3339(String),
@@ -52,7 +55,8 @@ impl Timestamp {
     /// Reads RFC 3339 with any offset.
     ///
     /// # Errors
-    /// Fails when the text is not RFC 3339; a missing time zone has an error of its own.
+    /// Fails when the text is not RFC 3339; a missing time zone or time of day has an error
+    /// of its own.
     pub fn parse(text: &str) -> Result<Timestamp, TimestampError> {
         let given = text.trim();
         if let Ok(parsed) = DateTime::parse_from_rfc3339(given) {
@@ -65,6 +69,8 @@ impl Timestamp {
         let short = text.chars().take(QUOTED_CHARS).collect();
         Err(if lacks_zone {
             TimestampError::NoZone(short)
+        } else if given.parse::<NaiveDate>().is_ok() {
+            TimestampError::NoTimeOfDay(short)
         } else {
             TimestampError::NotRfc3339(short)
         })
@@ -157,7 +163,10 @@ mod tests {
             let refused = Timestamp::parse(text);
             assert_eq!(refused, Err(TimestampError::NoZone(text.to_owned())));
         }
-        for text in ["tomorrow", "2026-12-01", ""] {
+        let date = "2026-12-01";
+        let refused = Timestamp::parse(date);
+        assert_eq!(refused, Err(TimestampError::NoTimeOfDay(date.to_owned())));
+        for text in ["tomorrow", "2026-13-01", ""] {
             let refused = Timestamp::parse(text);
             assert_eq!(refused, Err(TimestampError::NotRfc3339(text.to_owned())));
         }

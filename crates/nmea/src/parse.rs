@@ -4,13 +4,17 @@ use crate::checksum;
 use crate::fields::Fields;
 use crate::rejected::Rejected;
 use crate::sentence::{
-    Data, Gga, Gll, Hbt, Hdg, Hdm, Hdt, Kind, Rmc, Rot, Sentence, Ths, ThsMode, Vhw, Vtg, Xdr, Zda,
+    Data, Gga, Gll, Hbt, Hdg, Hdm, Hdt, Kind, Mta, Rmc, Rot, Sentence, Ths, ThsMode, Vhw, Vtg, Xdr,
+    Zda,
 };
 use crate::time::Date;
 
 /// The longest sentence that is read, from `$` to the checksum. The standard
 /// says 82, which many instruments exceed.
 pub const MAX_SENTENCE_BYTES: usize = 256;
+
+/// Usual names of a transducer in the open air; others may be in an engine.
+const AIR_TEMPERATURE: [&[u8]; 4] = [b"TempAir", b"AirTemp", b"ENV_OUTAIR_T", b"ENV_OUTSIDE_T"];
 
 /// Reads one sentence, from `$` to the checksum; white space after it is
 /// ignored.
@@ -70,6 +74,7 @@ fn data(kind: Kind, mut fields: Fields<'_>) -> Result<Data, Rejected> {
         Kind::Zda => Data::Zda(zda(fields)?),
         Kind::Vtg => Data::Vtg(vtg(fields)?),
         Kind::Xdr => Data::Xdr(xdr(fields)?),
+        Kind::Mta => Data::Mta(mta(fields)?),
         Kind::Hbt => Data::Hbt(hbt(fields)?),
     })
 }
@@ -211,17 +216,29 @@ fn xdr(fields: &mut Fields<'_>) -> Result<Xdr, Rejected> {
     while !fields.is_done() {
         let (transducer, value) = (fields.text(), fields.text());
         let (unit, name) = (fields.text(), fields.text());
-        if transducer != b"A" || unit != b"D" {
-            continue;
-        }
-        let angle = |field| Fields::new(Kind::Xdr, Some(value)).number(field);
-        if name.eq_ignore_ascii_case(b"ROLL") {
-            xdr.roll_deg_starboard_down = angle("roll")?;
-        } else if name.eq_ignore_ascii_case(b"PTCH") || name.eq_ignore_ascii_case(b"PITCH") {
-            xdr.pitch_deg_bow_up = angle("pitch")?;
+        let number = |field| Fields::new(Kind::Xdr, Some(value)).number(field);
+        let is_one_of =
+            |names: &[&[u8]]| names.iter().any(|known| name.eq_ignore_ascii_case(known));
+        match (transducer, unit) {
+            (b"A", b"D") if is_one_of(&[b"ROLL"]) => {
+                xdr.roll_deg_starboard_down = number("roll")?;
+            }
+            (b"A", b"D") if is_one_of(&[b"PTCH", b"PITCH"]) => {
+                xdr.pitch_deg_bow_up = number("pitch")?;
+            }
+            (b"C", b"C") if is_one_of(&AIR_TEMPERATURE) => {
+                xdr.air_temperature_c = number("air temperature")?;
+            }
+            _ => {}
         }
     }
     Ok(xdr)
+}
+
+fn mta(fields: &mut Fields<'_>) -> Result<Mta, Rejected> {
+    let air_temperature_c = fields.number("air temperature")?;
+    fields.letter_after(air_temperature_c, b'C', "unit")?;
+    Ok(Mta { air_temperature_c })
 }
 
 fn hbt(fields: &mut Fields<'_>) -> Result<Hbt, Rejected> {

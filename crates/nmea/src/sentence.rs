@@ -42,8 +42,10 @@ pub enum Data {
     Zda(Zda),
     /// Course and speed over the ground.
     Vtg(Option<Vtg>),
-    /// Transducers: roll and pitch.
+    /// Transducers: roll, pitch and temperature of the air.
     Xdr(Xdr),
+    /// Temperature of the air.
+    Mta(Mta),
     /// Heartbeat.
     Hbt(Hbt),
 }
@@ -237,13 +239,23 @@ pub struct Vtg {
     pub sog_kn: Option<f64>,
 }
 
-/// XDR: only roll and pitch are read (`A,x,D,ROLL` and `A,x,D,PTCH`).
+/// XDR: only roll and pitch are read (`A,x,D,ROLL` and `A,x,D,PTCH`), and the temperature
+/// of the air (`C,x,C,TempAir`, or one of the other usual names).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Xdr {
     /// Roll, positive starboard down.
     pub roll_deg_starboard_down: Option<f64>,
     /// Pitch, positive bow up.
     pub pitch_deg_bow_up: Option<f64>,
+    /// Temperature of the air, degrees Celsius.
+    pub air_temperature_c: Option<f64>,
+}
+
+/// MTA.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mta {
+    /// Temperature of the air, degrees Celsius.
+    pub air_temperature_c: Option<f64>,
 }
 
 /// HBT.
@@ -273,12 +285,13 @@ pub enum Kind {
     Zda,
     Vtg,
     Xdr,
+    Mta,
     Hbt,
 }
 
 impl Kind {
     /// All kinds, in the order of their declaration.
-    pub const ALL: [Kind; 13] = [
+    pub const ALL: [Kind; 14] = [
         Kind::Hdg,
         Kind::Hdm,
         Kind::Hdt,
@@ -291,6 +304,7 @@ impl Kind {
         Kind::Zda,
         Kind::Vtg,
         Kind::Xdr,
+        Kind::Mta,
         Kind::Hbt,
     ];
 
@@ -309,6 +323,7 @@ impl Kind {
             b"ZDA" => Kind::Zda,
             b"VTG" => Kind::Vtg,
             b"XDR" => Kind::Xdr,
+            b"MTA" => Kind::Mta,
             b"HBT" => Kind::Hbt,
             _ => return None,
         })
@@ -329,6 +344,7 @@ impl Kind {
             Kind::Zda => "ZDA",
             Kind::Vtg => "VTG",
             Kind::Xdr => "XDR",
+            Kind::Mta => "MTA",
             Kind::Hbt => "HBT",
         }
     }
@@ -356,6 +372,7 @@ impl Data {
             Data::Zda(_) => Kind::Zda,
             Data::Vtg(_) => Kind::Vtg,
             Data::Xdr(_) => Kind::Xdr,
+            Data::Mta(_) => Kind::Mta,
             Data::Hbt(_) => Kind::Hbt,
         }
     }

@@ -80,6 +80,10 @@ fn fields(data: &Data, out: &mut Vec<u8>) {
             print::text(out, b"N");
         }
         Data::Xdr(xdr) => xdr_fields(xdr, out),
+        Data::Mta(mta) => {
+            print::number(out, mta.air_temperature_c);
+            print::text(out, b"C");
+        }
         Data::Hbt(hbt) => {
             print::number(out, hbt.interval_s);
             print::text(out, if hbt.normal { b"A" } else { b"V" });
@@ -130,16 +134,19 @@ fn speed(out: &mut Vec<u8>, knots: Option<f64>) {
 
 fn xdr_fields(xdr: &Xdr, out: &mut Vec<u8>) {
     if let Some(roll) = xdr.roll_deg_starboard_down {
-        transducer(out, roll, b"ROLL");
+        transducer(out, [b"A", b"D"], roll, b"ROLL");
     }
     if let Some(pitch) = xdr.pitch_deg_bow_up {
-        transducer(out, pitch, b"PTCH");
+        transducer(out, [b"A", b"D"], pitch, b"PTCH");
+    }
+    if let Some(temperature) = xdr.air_temperature_c {
+        transducer(out, [b"C", b"C"], temperature, b"TempAir");
     }
 }
 
-fn transducer(out: &mut Vec<u8>, degrees: f64, name: &[u8]) {
-    print::text(out, b"A");
-    print::number(out, Some(degrees));
-    print::text(out, b"D");
+fn transducer(out: &mut Vec<u8>, [kind, unit]: [&[u8]; 2], value: f64, name: &[u8]) {
+    print::text(out, kind);
+    print::number(out, Some(value));
+    print::text(out, unit);
     print::text(out, name);
 }

@@ -1,7 +1,7 @@
 //! Sentences as printed in manuals and handbooks, and the meaning of each
 //! letter.
 
-use binnacle_nmea::sentence::{Gga, Hbt, Hdg, Position, Rot, Ths, ThsMode, Vhw, Vtg, Xdr};
+use binnacle_nmea::sentence::{Gga, Hbt, Hdg, Mta, Position, Rot, Ths, ThsMode, Vhw, Vtg, Xdr};
 use binnacle_nmea::time::{Date, TimeOfDay};
 use binnacle_nmea::{Data, Rejected, Sentence, parse};
 
@@ -182,6 +182,7 @@ fn an_empty_field_is_unknown_and_never_zero() {
     assert_eq!(data("IIVHW,,,,,,,,"), Data::Vhw(Vhw::default()));
     assert_eq!(data("HEROT,,A"), Data::Rot(Rot::default()));
     assert_eq!(data("IIXDR,A,,D,ROLL"), Data::Xdr(Xdr::default()));
+    assert_eq!(data("WIMTA,,C"), Data::Mta(Mta::default()));
     let Data::Zda(zda) = data("GPZDA,120000,,,,,") else {
         panic!()
     };
@@ -242,6 +243,7 @@ fn starboard_turns_starboard_heel_and_bow_up_are_positive() {
     let expected = Data::Xdr(Xdr {
         roll_deg_starboard_down: Some(0.4),
         pitch_deg_bow_up: Some(-1.8),
+        air_temperature_c: None,
     });
     assert_eq!(data("YXXDR,A,-1.8,D,PTCH,A,0.4,D,ROLL"), expected);
     assert_eq!(
@@ -250,6 +252,25 @@ fn starboard_turns_starboard_heel_and_bow_up_are_positive() {
     );
     // A displacement that happens to be called roll is not an angle.
     assert_eq!(data("YXXDR,D,0.4,M,ROLL"), Data::Xdr(Xdr::default()));
+}
+
+#[test]
+fn the_temperature_of_the_air_is_read_and_no_other() {
+    let expected = Mta {
+        air_temperature_c: Some(-3.5),
+    };
+    assert_eq!(data("WIMTA,-3.5,C"), Data::Mta(expected));
+    let expected = Data::Xdr(Xdr {
+        air_temperature_c: Some(21.5),
+        ..Xdr::default()
+    });
+    for name in ["TempAir", "AIRTEMP", "ENV_OUTAIR_T", "ENV_OUTSIDE_T"] {
+        assert_eq!(data(&format!("YXXDR,C,21.5,C,{name}")), expected, "{name}");
+    }
+    assert_eq!(
+        data("YXXDR,C,85.0,C,ENGINE1,C,21.5,F,TempAir"),
+        Data::Xdr(Xdr::default())
+    );
 }
 
 #[test]
@@ -293,6 +314,8 @@ fn a_wrong_field_is_refused_by_name() {
         ("GPZDA,120000,31,02,2026,,", "date"),
         ("GPGGA,120000,,,,,9,,,,,,,,", "quality"),
         ("IIXDR,A,x,D,ROLL", "roll"),
+        ("IIXDR,C,x,C,TempAir", "air temperature"),
+        ("WIMTA,12.0,F", "unit"),
     ] {
         let Err(Rejected::BadField { field: found, .. }) = parse(&line(body)) else {
             panic!("{body} was not refused");

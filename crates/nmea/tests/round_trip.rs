@@ -1,7 +1,7 @@
 //! Printed sentences are read back unchanged, and no bytes cause a panic.
 
 use binnacle_nmea::sentence::{
-    Gga, Gll, Hbt, Hdg, Hdm, Hdt, Position, Rmc, Rot, Ths, ThsMode, Vhw, Vtg, Xdr, Zda,
+    Gga, Gll, Hbt, Hdg, Hdm, Hdt, Mta, Position, Rmc, Rot, Ths, ThsMode, Vhw, Vtg, Xdr, Zda,
 };
 use binnacle_nmea::tag::parse_tagged;
 use binnacle_nmea::time::{Date, TimeOfDay};
@@ -123,10 +123,14 @@ fn data() -> impl Strategy<Value = Data> {
             })
         )
         .prop_map(Data::Vtg),
-        (any_number(), any_number()).prop_map(|(roll, pitch)| Data::Xdr(Xdr {
-            roll_deg_starboard_down: roll,
-            pitch_deg_bow_up: pitch
-        })),
+        (any_number(), any_number(), any_number()).prop_map(|(roll, pitch, temperature)| {
+            Data::Xdr(Xdr {
+                roll_deg_starboard_down: roll,
+                pitch_deg_bow_up: pitch,
+                air_temperature_c: temperature,
+            })
+        }),
+        any_number().prop_map(|air_temperature_c| Data::Mta(Mta { air_temperature_c })),
         (magnitude(), any::<bool>(), of(0..=9_u8)).prop_map(|(interval_s, normal, sequence)| {
             Data::Hbt(Hbt {
                 interval_s,
@@ -177,7 +181,11 @@ proptest! {
     ) {
         for data in [
             Data::Hdg(Hdg { reading_deg: Some(a), deviation_deg_east: None, variation_deg_east: None }),
-            Data::Xdr(Xdr { roll_deg_starboard_down: Some(b), pitch_deg_bow_up: Some(c) }),
+            Data::Xdr(Xdr {
+                roll_deg_starboard_down: Some(b),
+                pitch_deg_bow_up: Some(c),
+                air_temperature_c: Some(a),
+            }),
             Data::Rmc(Some(Rmc {
                 position: Some(Position { lat_deg_north: a, lon_deg_east: b }),
                 cog_deg_true: Some(c),
@@ -207,7 +215,7 @@ proptest! {
         fields in prop::collection::vec(
             prop_oneof![
                 Just(String::new()), "[AVENSWTMKDP]", "[0-9]{1,6}(\\.[0-9]{0,9})?",
-                "-?[0-9]{1,3}\\.[0-9]", "[0-3][0-9][0-5][0-9]\\.[0-9]{2,8}", "ROLL|PTCH",
+                "-?[0-9]{1,3}\\.[0-9]", "[0-3][0-9][0-5][0-9]\\.[0-9]{2,8}", "ROLL|PTCH|TempAir",
             ],
             0..14,
         ),

@@ -19,8 +19,9 @@ REASONS = [
     "no_time",
 ]
 TIME, LAT, LON, GYRO, SATELLITE, COMPASS, SOG, RATE_OF_TURN, SPREAD, WINDOWS = range(1, 11)
+COURSE, ROLL, ROLL_SPREAD, TEMPERATURE, GYRO_SOURCE, SATELLITE_SOURCE = range(11, 17)
 REQUIRED = (TIME, LAT, LON, COMPASS, WINDOWS)
-DIRECTIONS = (LON, GYRO, SATELLITE, COMPASS)
+DIRECTIONS = (LON, GYRO, SATELLITE, COMPASS, COURSE)
 LIMIT = 1 << 53
 STATES = ("open", "agree", "not_judged")
 FIRST_SECOND, LAST_SECOND = 315_964_800, 4_102_444_800
@@ -386,9 +387,23 @@ def read_sample(row):
     if satellite is not None:
         satellite = plus(satellite, gyro or (0, 0))
     compass = plus(row.need(COMPASS), gyro or satellite or (0, 0))
+    course = row.get(COURSE)
+    if course is not None:
+        course = exact(*plus(course, gyro or satellite or (0, 0)))
     row.need(WINDOWS)
     micros = time[0] * 10**6 // 10 ** time[1]
     instant = datetime(1970, 1, 1, tzinfo=timezone.utc) + timedelta(microseconds=micros)
+    later = {
+        "cog_deg": course,
+        "roll_deg": row.within(ROLL, -90, 90),
+        "roll_spread_deg": row.within(ROLL_SPREAD, 0, 90),
+        "temperature_c": row.within(TEMPERATURE, -100, 100),
+        "gyro_source": row.within(GYRO_SOURCE, 0, 65_535),
+        "satellite_source": row.within(SATELLITE_SOURCE, 0, 65_535),
+    }
+    for source in ("gyro_source", "satellite_source"):
+        if later[source] is not None:
+            later[source] = int(later[source])
     return {
         "time": instant.isoformat().replace("+00:00", "Z"),
         "lat": lat,
@@ -400,6 +415,7 @@ def read_sample(row):
         "sog_kn": row.within(SOG, 0, 200),
         "rate_of_turn_deg_min": row.within(RATE_OF_TURN, -3600, 3600),
         "spread_deg": row.within(SPREAD, 0, 180),
+        **{name: value for name, value in later.items() if value is not None},
     }
 
 

@@ -66,13 +66,7 @@ impl Report {
     /// # Errors
     /// [`ReportError`] with the first bad field.
     pub fn checked(self, now: Timestamp) -> Result<Report, ReportError> {
-        let latest = now.plus_seconds(CLOCK_TOLERANCE_S);
-        if self.from.micros() < EARLIEST_MICROS {
-            return Err(error("from", format!("{} is before 1980-01-06", self.from)));
-        }
-        if self.from > latest {
-            return Err(error("from", format!("{} is in the future", self.from)));
-        }
+        check_time("from", self.from, now)?;
         let report = Report {
             hatch: optional("hatch", self.hatch.as_deref())?,
             port: optional("port", self.port.as_deref())?,
@@ -117,28 +111,48 @@ impl Report {
     }
 }
 
+/// Checks that an event is neither before GPS time nor in the future.
+pub(crate) fn check_time(
+    field: &'static str,
+    time: Timestamp,
+    now: Timestamp,
+) -> Result<(), ReportError> {
+    if time.micros() < EARLIEST_MICROS {
+        return Err(error(field, format!("{time} is before 1980-01-06")));
+    }
+    if time > now.plus_seconds(CLOCK_TOLERANCE_S) {
+        return Err(error(field, format!("{time} is in the future")));
+    }
+    Ok(())
+}
+
 /// Returns the reporter's name, trimmed; empty when none is given.
 ///
 /// # Errors
 /// [`ReportError`] when it is too long or has control characters.
 pub fn reporter(name: &str) -> Result<String, ReportError> {
-    let name = trimmed("reporter", name, MAX_NAME)?;
-    if name.contains('\n') {
-        return Err(error("reporter", "must be a single line"));
-    }
-    Ok(name)
+    line("reporter", name, MAX_NAME)
 }
 
 /// Returns a name on one line; `None` when it is empty.
-fn optional(field: &'static str, name: Option<&str>) -> Result<Option<String>, ReportError> {
-    let name = trimmed(field, name.unwrap_or_default(), MAX_NAME)?;
-    if name.contains('\n') {
-        return Err(error(field, "must be a single line"));
-    }
+pub(crate) fn optional(
+    field: &'static str,
+    name: Option<&str>,
+) -> Result<Option<String>, ReportError> {
+    let name = line(field, name.unwrap_or_default(), MAX_NAME)?;
     Ok(Some(name).filter(|name| !name.is_empty()))
 }
 
-fn trimmed(field: &'static str, text: &str, most: usize) -> Result<String, ReportError> {
+/// Returns a text on one line, trimmed.
+pub(crate) fn line(field: &'static str, text: &str, most: usize) -> Result<String, ReportError> {
+    let text = trimmed(field, text, most)?;
+    if text.contains('\n') {
+        return Err(error(field, "must be a single line"));
+    }
+    Ok(text)
+}
+
+pub(crate) fn trimmed(field: &'static str, text: &str, most: usize) -> Result<String, ReportError> {
     let text = text.trim().replace("\r\n", "\n");
     if text.chars().count() > most {
         return Err(error(field, format!("is longer than {most} characters")));
@@ -149,7 +163,7 @@ fn trimmed(field: &'static str, text: &str, most: usize) -> Result<String, Repor
     Ok(text)
 }
 
-fn error(field: &'static str, detail: impl Into<String>) -> ReportError {
+pub(crate) fn error(field: &'static str, detail: impl Into<String>) -> ReportError {
     ReportError {
         field,
         detail: detail.into(),

@@ -1,6 +1,7 @@
 //! The JSON messages: enrolment, acknowledgement, downlink, and officers'
-//! reports for the logbook.
+//! reports for the logbook and azimuths.
 
+use crate::azimuth::AzimuthReport;
 use crate::batch::StreamId;
 use crate::logbook::Report;
 pub use crate::settings::Settings;
@@ -236,6 +237,31 @@ pub struct LogbookAnswer {
     pub withdrawn: bool,
 }
 
+/// An azimuth observed on board, under an id made there: the request of `PUT
+/// /api/v1/agents/azimuths/{id}`.
+///
+/// An observation never changes: a wrong one is withdrawn. It may be sent until it is
+/// acknowledged: repeating it changes nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct BoardAzimuth {
+    /// True when the observer withdraws it.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(default = false))]
+    pub withdrawn: bool,
+    /// The observation and its observer.
+    #[serde(flatten)]
+    pub report: AzimuthReport,
+}
+
+/// The response to a [`BoardAzimuth`].
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct BoardAzimuthAnswer {
+    /// True when it was withdrawn, on board or in the office.
+    pub withdrawn: bool,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -275,6 +301,18 @@ mod tests {
             "note": "",
         }));
         assert_comes_back::<LogbookAnswer>(&json!({ "revision": 2, "withdrawn": false }));
+    }
+
+    #[test]
+    fn an_azimuth_reads_as_it_is_written() {
+        assert_comes_back::<BoardAzimuth>(&json!({
+            "withdrawn": false, "time": "2026-11-20T10:00:00Z", "lat": 43.4, "lon": -3.1,
+            "kind": "sun_azimuth", "compass_heading_deg": 92.0, "compass_bearing_deg": 150.0,
+            "gyro_heading_deg": 94.0, "gyro_bearing_deg": null, "horizon": null,
+            "height_of_eye_m": null, "name": null, "true_bearing_deg": null, "altitude_deg": null,
+            "confirmed": false, "observer": "LW", "remark": "",
+        }));
+        assert_comes_back::<BoardAzimuthAnswer>(&json!({ "withdrawn": true }));
     }
 
     #[test]

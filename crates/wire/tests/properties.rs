@@ -4,9 +4,9 @@
 
 mod support;
 
-use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading, wrap_180};
 use binnacle_compass::position::Position;
-use binnacle_compass::sample::Sample;
+use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::{Batch, StreamId, Thinned};
@@ -34,9 +34,22 @@ fn samples() -> impl Strategy<Value = Vec<Sample>> {
             option::of(-3600.0..3600.0_f64),
             option::of(0.0..180.0_f64),
         ),
+        (
+            option::of(heading()),
+            option::of(-90.0..=90.0_f64),
+            option::of(0.0..=90.0_f64),
+            option::of(-100.0..=100.0_f64),
+        ),
+        (option::of(any::<u16>()), option::of(any::<u16>())),
         1..=u16::MAX,
     );
-    let sample = sample.prop_map(|(place, headings, rest, windows)| Sample {
+    let sample = sample.prop_map(|(place, headings, rest, motion, sources, windows)| Sample {
+        cog: motion.0.and_then(CourseOverGround::new),
+        roll_deg: motion.1,
+        roll_spread_deg: motion.2,
+        temperature_c: motion.3,
+        gyro_source: sources.0.map(SourceId::new),
+        satellite_source: sources.1.map(SourceId::new),
         gyro: headings.1.and_then(TrueHeading::new),
         satellite: headings.2.and_then(TrueHeading::new),
         sog_kn: rest.0,
@@ -128,6 +141,22 @@ fn within_half_a_step(sent: &Sample, decoded: &Sample) -> bool {
         )
         && close(sent.spread_deg, decoded.spread_deg, 0.01)
         && sent.windows == decoded.windows
+        && motion_within_half_a_step(sent, decoded)
+}
+
+fn motion_within_half_a_step(sent: &Sample, decoded: &Sample) -> bool {
+    let course = match (sent.cog, decoded.cog) {
+        (Some(sent), Some(decoded)) => {
+            wrap_180(sent.degrees() - decoded.degrees()).abs() <= 0.5 + SLACK
+        }
+        (sent, decoded) => sent.is_none() && decoded.is_none(),
+    };
+    course
+        && close(sent.roll_deg, decoded.roll_deg, 0.1)
+        && close(sent.roll_spread_deg, decoded.roll_spread_deg, 0.25)
+        && close(sent.temperature_c, decoded.temperature_c, 0.5)
+        && (sent.gyro_source, sent.satellite_source)
+            == (decoded.gyro_source, decoded.satellite_source)
 }
 
 proptest! {

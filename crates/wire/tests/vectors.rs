@@ -7,9 +7,9 @@
 
 mod support;
 
-use binnacle_compass::angle::TrueHeading;
+use binnacle_compass::angle::{CourseOverGround, TrueHeading};
 use binnacle_compass::position::Position;
-use binnacle_compass::sample::Sample;
+use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_wire::batch::{Batch, Thinned};
 use binnacle_wire::{DecodeError, decode, encode};
 use serde_json::{Value, json};
@@ -74,7 +74,42 @@ fn written() -> Vec<(&'static str, &'static str, Batch)> {
             "thinned",
             noted(13, voyage(7, 12), &[], Some(17)),
         ),
+        ("dense_motion", "dense_motion", batch(14, motion())),
+        (
+            "dense_motion_gaps",
+            "dense_motion_gaps",
+            batch(15, motion_with_gaps()),
+        ),
     ]
+}
+
+/// A day with everything that a sample may have.
+fn motion() -> Vec<Sample> {
+    let mut samples = support::voyage_with_motion(8, 114);
+    for sample in &mut samples[40..] {
+        let heading = sample.gyro.map(TrueHeading::degrees);
+        sample.satellite = heading.and_then(|h| TrueHeading::new(h - 0.4));
+        sample.satellite_source = Some(SourceId::from_name("bridge GP THS"));
+    }
+    samples
+}
+
+/// Another gyro from some time on, then none; courses across north; gaps in each column.
+fn motion_with_gaps() -> Vec<Sample> {
+    let mut samples = motion();
+    for (row, sample) in samples.iter_mut().enumerate() {
+        sample.cog = CourseOverGround::new(row as f64 - 57.0).filter(|_| row % 3 > 0);
+        sample.roll_deg = sample.roll_deg.filter(|_| row > 60).map(|roll| -roll);
+        sample.roll_spread_deg = sample.roll_spread_deg.filter(|_| row > 70);
+        sample.temperature_c = (row % 6 == 0).then_some(-12.0);
+        if row > 30 {
+            sample.gyro_source = Some(SourceId::from_name("bridge HE HDT"));
+        }
+        if row > 80 {
+            (sample.gyro, sample.gyro_source) = (None, None);
+        }
+    }
+    samples
 }
 
 fn noted(seq: u64, samples: Vec<Sample>, revisions: &[u32], thinned: Option<u64>) -> Batch {
@@ -334,7 +369,12 @@ fn the_python_decoder_agrees_on_every_vector_and_a_thousand_more() {
         }
     }
     for seed in 0..500 {
-        let samples = voyage(seed, 1 + dice.next() as usize % 60);
+        let sail = if seed % 2 == 0 {
+            voyage
+        } else {
+            support::voyage_with_motion
+        };
+        let samples = sail(seed, 1 + dice.next() as usize % 60);
         let plain = batch(seed + 1, samples);
         let alerts = [1, 2, 3].map(support::alert)[..seed as usize % 4].to_vec();
         let good = encode(&Batch { alerts, ..plain }).unwrap();

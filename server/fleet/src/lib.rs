@@ -9,6 +9,8 @@
     reason = "counts go into BIGINT and are far from its end"
 )]
 
+pub mod event_kinds;
+
 pub mod binnacles;
 pub mod compasses;
 pub mod operators;
@@ -32,6 +34,7 @@ pub mod deviation;
 pub mod deviation_table;
 pub mod models;
 
+pub mod azimuths;
 pub mod card;
 pub mod deviation_book;
 pub mod logbook;

@@ -13,6 +13,7 @@ pub mod api;
 pub mod berth_session;
 pub mod completion;
 pub mod dispatch;
+pub mod event_kinds;
 pub mod evidence;
 pub mod firms;
 pub mod verification;

@@ -10,6 +10,7 @@
     reason = "counts are far below the limit of BIGINT"
 )]
 
+pub mod event_kinds;
 pub mod needs;
 pub mod port_calls;
 pub mod schedule;

@@ -71,7 +71,7 @@ pub struct AdminWriter {
     pub user: UserId,
 }
 
-/// Caller of an operator or a firm, who may read the work orders between the two.
+/// Caller of an operator or a firm, who may read what the two share.
 #[derive(Clone, Copy, Debug)]
 pub struct PartyReader {
     /// Operator or firm of the caller.
@@ -80,7 +80,7 @@ pub struct PartyReader {
     pub user: UserId,
 }
 
-/// Caller of an operator or a firm, who may act on the work orders between the two.
+/// Caller of an operator or a firm, who may change what the two share.
 #[derive(Clone, Copy, Debug)]
 pub struct PartyWriter {
     /// Operator or firm of the caller.
@@ -359,7 +359,7 @@ where
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<PartyWriter> {
         let caller = Caller::from_request_parts(parts, state).await?;
         let tenant = caller.party()?;
-        if !caller.user.role.may_act_on_orders() {
+        if !caller.user.role.may_change_shared() {
             return Err(Error::Forbidden(
                 "only an admin or an adjuster may change this",
             ));

@@ -2,7 +2,7 @@
 //!
 //! Invariants: the key and the created resource are stored in one transaction, so that either
 //! both exist or neither. A key belongs to one operator or firm and is deleted after a day.
-//! Keys of a work order are kept with the order.
+//! A capability may keep the keys of its own resources with them instead.
 
 use crate::db::{Tx, execute, row};
 use crate::error::{Error, Result};

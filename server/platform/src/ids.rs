@@ -61,6 +61,7 @@ id!(AgentId, "Id of an agent installation.");
 id!(ModelId, "Id of a version of a compass's model.");
 id!(JobId, "Id of a job in the work queue.");
 id!(EntryId, "Id of an entry in a vessel's logbook.");
+id!(AzimuthId, "Id of an azimuth.");
 id!(AlertId, "Id of an alert.");
 id!(WebhookId, "Id of a webhook.");
 id!(RecipientId, "Id of a mail recipient.");

@@ -1,55 +1,61 @@
 //! Notices: messages to the users of an operator or a firm, independent of their delivery.
+//!
+//! The capabilities that send notices declare their kinds.
 
 use crate::db::DomainEvent;
-use crate::ids::{AlertId, OrderId, UserId, VesselId};
+use crate::ids::{UserId, VesselId};
 use crate::session::Role;
 use crate::tenants::Tenant;
 use crate::time::Time;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use utoipa::ToSchema;
+use uuid::Uuid;
 
 /// Subject of a notification.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema, sqlx::Type,
-)]
-#[serde(rename_all = "snake_case")]
-#[sqlx(type_name = "text", rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(transparent)]
 #[schema(as = NotificationKind)]
-pub enum Kind {
-    /// A compass needs adjustment soon or very soon, or is overdue.
-    DueSoon,
-    /// A due date was brought forward.
-    NeedRaised,
-    /// Your firm is offered a work order, or another time for one.
-    Offered,
-    /// The other party of a work order accepts, declines, or proposes other terms.
-    Answered,
-    /// A work order was not answered in time.
-    AnswerLate,
-    /// The other party wrote a message about a work order.
-    Message,
-    /// The port call of a work order was moved or withdrawn.
-    CallMoved,
-    /// The adjuster is on board.
-    OnBoard,
-    /// The adjuster has completed and signed the work order.
-    Completed,
-    /// Deviations at sea agree with the prediction.
-    Verified,
-    /// A deviation at sea disagrees with the prediction.
-    VerificationFailed,
-    /// A work order is cancelled, or another firm has it.
-    Withdrawn,
-    /// An alert of severity warning or worse is raised, becomes critical, sinks to a notice, or
-    /// is over. Critical alerts are sent at once.
-    Alert,
+pub struct Kind(&'static str);
+
+/// Users who receive notices of a kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Readers {
+    /// Users of operators.
+    Operators,
+    /// Users of firms.
+    Firms,
+    /// Users of operators and firms.
+    OperatorsAndFirms,
+}
+
+/// Mail about notices of a kind, unless a user chooses another way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DefaultMail {
+    /// Each notice by itself.
+    Letter,
+    /// All notices since the last digest.
+    Digest,
+    /// None: the operator's mail recipients get letters about the same, and a user who is one of
+    /// them gets no other.
+    Recipients,
+}
+
+/// Kind of notice with its readers and their mail, declared by the capability that sends it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DeclaredKind {
+    /// Kind of notice.
+    pub kind: Kind,
+    /// Users who receive it.
+    pub readers: Readers,
+    /// Mail about it by default.
+    pub mail: DefaultMail,
 }
 
 /// Message to the users whom its kind concerns.
 #[derive(Clone, Debug)]
 pub struct Notice {
     /// Subject of the notice.
-    pub kind: Kind,
+    pub kind: DeclaredKind,
     /// True if the notice must go out at once.
     pub urgent: bool,
     /// Subject line.
@@ -60,10 +66,8 @@ pub struct Notice {
     pub path: String,
     /// Vessel concerned.
     pub vessel: VesselId,
-    /// Work order concerned, if any.
-    pub order: Option<OrderId>,
-    /// Alert concerned, if any.
-    pub alert: Option<AlertId>,
+    /// Id of what the notice is about, if that is a single thing of the vessel.
+    pub about: Option<Uuid>,
 }
 
 /// Notices for a tenant's users, delivered to each as the user has chosen.
@@ -81,32 +85,40 @@ pub struct NoticesPublished {
 impl DomainEvent for NoticesPublished {}
 
 impl Kind {
-    /// All kinds.
-    pub const ALL: [Kind; 13] = [
-        Kind::DueSoon,
-        Kind::NeedRaised,
-        Kind::Offered,
-        Kind::Answered,
-        Kind::AnswerLate,
-        Kind::Message,
-        Kind::CallMoved,
-        Kind::OnBoard,
-        Kind::Completed,
-        Kind::Verified,
-        Kind::VerificationFailed,
-        Kind::Withdrawn,
-        Kind::Alert,
-    ];
+    /// Returns the kind with a name, which the API shows and the database stores.
+    pub const fn new(name: &'static str) -> Kind {
+        Kind(name)
+    }
 
-    /// Checks whether users with this role can receive notices of this kind.
-    pub fn concerns(self, role: Role) -> bool {
+    /// Returns the name of the kind.
+    pub fn name(self) -> &'static str {
+        self.0
+    }
+}
+
+impl Readers {
+    /// Checks whether users with this role are among them.
+    pub fn include(self, role: Role) -> bool {
         match role {
-            Role::Admin | Role::Viewer => !matches!(self, Kind::Offered | Kind::Withdrawn),
-            Role::Adjuster => !matches!(
-                self,
-                Kind::DueSoon | Kind::NeedRaised | Kind::OnBoard | Kind::Completed | Kind::Alert
-            ),
+            Role::Admin | Role::Viewer => self != Readers::Firms,
+            Role::Adjuster => self != Readers::Operators,
             Role::PlatformAdmin => false,
         }
+    }
+}
+
+impl DeclaredKind {
+    /// Declares a kind of notice.
+    pub const fn new(name: &'static str, readers: Readers, mail: DefaultMail) -> DeclaredKind {
+        DeclaredKind {
+            kind: Kind::new(name),
+            readers,
+            mail,
+        }
+    }
+
+    /// Returns the name of the kind.
+    pub fn name(self) -> &'static str {
+        self.kind.name()
     }
 }

@@ -1,4 +1,4 @@
-//! Severity of alerts.
+//! Severity of what is announced.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;

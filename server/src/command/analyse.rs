@@ -4,7 +4,7 @@ use super::{BadInput, input, json, logbook, print_result};
 use crate::cli::Analyse;
 use binnacle_analysis::advice::sail_next;
 use binnacle_analysis::analyse::analyse as run;
-use binnacle_analysis::fit::{CsvRow, readings_from_csv};
+use binnacle_analysis::fit::{CsvRow, Motion, readings_from_csv};
 use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::position::Position;
@@ -37,7 +37,9 @@ fn find(arguments: &Analyse) -> Result<String, BadInput> {
         .map_err(|error| table.error_at(&error))?;
     let mut samples = Vec::with_capacity(table.rows.len());
     for (index, row) in table.rows.iter().enumerate() {
-        samples.push(sample(row).map_err(|(column, what)| table.invalid(index, column, what))?);
+        let sample = sample(row).map_err(|(column, what)| table.invalid(index, column, what))?;
+        let motion = Motion::from_row(row, index).map_err(|error| table.error_at(&error))?;
+        samples.push(motion.put_into(sample));
     }
     let logbook: Vec<LogbookEntry> = match &arguments.logbook {
         Some(path) => logbook::read(path)?,

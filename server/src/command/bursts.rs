@@ -5,7 +5,7 @@ use super::{BadInput, json, print_result};
 use crate::cli::Bursts;
 use crate::subscriptions::subscribers;
 use anyhow::{Context, Result};
-use binnacle_fleet::ingest;
+use binnacle_fleet::ingest::{self, ShortBurst};
 use binnacle_platform::clock::Clock;
 use binnacle_platform::db::Db;
 use binnacle_platform::ids::VesselId;
@@ -25,7 +25,7 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
     for path in &arguments.messages {
         let name = path.display().to_string();
         match read(path) {
-            Ok(bytes) => messages.push((name, bytes)),
+            Ok(bytes) => messages.push(ShortBurst { name, bytes }),
             Err(error) => return print_result(Err(BadInput(format!("{name}: {error}")))),
         }
     }
@@ -39,9 +39,10 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
         Ok(imported?)
     })?;
     if let Some(folder) = &arguments.answers {
-        for (stream, bytes) in &imported.acknowledgements {
-            let path = folder.join(format!("{stream}.sbd"));
-            write_whole(&path, bytes).with_context(|| path.display().to_string())?;
+        for acknowledgement in &imported.acknowledgements {
+            let path = folder.join(format!("{}.sbd", acknowledgement.stream));
+            write_whole(&path, &acknowledgement.bytes)
+                .with_context(|| path.display().to_string())?;
         }
     }
     let printed = print_result(Ok(json(&imported)))?;

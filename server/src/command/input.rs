@@ -174,7 +174,7 @@ fn check_header(path: &str, header: &StringRecord) -> Result<(), BadInput> {
 }
 
 /// Known columns.
-const COLUMNS: [&str; 15] = [
+const COLUMNS: [&str; 21] = [
     "time",
     "lat",
     "lon",
@@ -186,7 +186,13 @@ const COLUMNS: [&str; 15] = [
     "satellite_deg",
     "reference_deg",
     "sog_kn",
+    "cog_deg",
     "rate_of_turn_deg_min",
+    "roll_deg",
+    "roll_spread_deg",
+    "temperature_c",
+    "gyro_source",
+    "satellite_source",
     "spread_deg",
     "windows",
     "weight",
@@ -197,7 +203,6 @@ const LONGEST_VALUE: usize = 64;
 /// Reads the known columns; others are ignored.
 fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, String)> {
     let mut row = CsvRow::default();
-    let mut unused = None;
     for (column, text) in header.iter().zip(record) {
         let number = match column {
             _ if !COLUMNS.contains(&column) => continue,
@@ -222,11 +227,17 @@ fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, 
             "satellite_deg" => &mut row.satellite_deg,
             "reference_deg" => &mut row.reference_deg,
             "sog_kn" => &mut row.sog_kn,
+            "cog_deg" => &mut row.cog_deg,
+            "rate_of_turn_deg_min" => &mut row.rate_of_turn_deg_min,
+            "roll_deg" => &mut row.roll_deg,
+            "roll_spread_deg" => &mut row.roll_spread_deg,
+            "temperature_c" => &mut row.temperature_c,
+            "gyro_source" => &mut row.gyro_source,
+            "satellite_source" => &mut row.satellite_source,
             "spread_deg" => &mut row.spread_deg,
             "windows" => &mut row.windows,
             "weight" => &mut row.weight,
-            // The value is not used here, but it must be valid.
-            _ => &mut unused,
+            _ => continue,
         };
         *number = parse(text).map_err(|what| (column.to_owned(), what))?;
     }

@@ -73,7 +73,7 @@ where
     Peer: for<'a> Connected<IncomingStream<'a, L>>,
 {
     let state = ServerState::new(app.clone());
-    let mailer = Mailer::new(&app.config.mail)?;
+    let mailer = Mailer::new(&app.config.mail, alerts::TOPIC_LIST)?;
     let mailer = mailer.map(|mailer| mailer.with_list(reports::MAILING_LIST));
     let mut parts = JoinSet::new();
     let events = EventListener::open(&app.db).await?;

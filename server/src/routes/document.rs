@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::mem;
 use utoipa::ToSchema;
 use utoipa::openapi::path::{Operation, ParameterIn};
-use utoipa::openapi::schema::Schema;
+use utoipa::openapi::schema::{Object, Schema};
 use utoipa::openapi::{OpenApi, RefOr, Response};
 
 /// Adds the fields that one domain's problems carry to the schema `Problem`.
@@ -61,16 +61,42 @@ pub(super) fn correct_schemas(document: &mut OpenApi) {
 ///
 /// # Panics
 /// Panics when the document has no such schema: a mistake in the code.
-pub(super) fn list_values(
+pub(super) fn list_values<'a>(
     document: &mut OpenApi,
     name: &str,
-    values: impl Iterator<Item = &'static str>,
+    values: impl Iterator<Item = &'a str>,
 ) {
-    let schemas = &mut document.components.get_or_insert_default().schemas;
-    let Some(RefOr::T(Schema::Object(schema))) = schemas.get_mut(name) else {
-        panic!("the document has no schema {name}");
-    };
-    schema.enum_values = Some(values.map(Value::from).collect());
+    object(document, name).enum_values = Some(values.map(Value::from).collect());
+}
+
+/// Lets the keys of a property that is a map be the names that a schema allows.
+///
+/// # Panics
+/// Panics when the document has no such property or schema: a mistake in the code.
+pub(super) fn name_properties(document: &mut OpenApi, owner: &str, property: &str, names: &str) {
+    let names = Schema::Object(object(document, names).clone());
+    match object(document, owner).properties.get_mut(property) {
+        Some(RefOr::T(Schema::Object(map))) => map.property_names = Some(Box::new(names)),
+        _ => panic!("{owner} has no map {property}"),
+    }
+}
+
+/// Sets the example of a property that is a list.
+///
+/// # Panics
+/// Panics when the document has no such property: a mistake in the code.
+pub(super) fn set_example(document: &mut OpenApi, owner: &str, property: &str, example: Value) {
+    match object(document, owner).properties.get_mut(property) {
+        Some(RefOr::T(Schema::Array(list))) => list.example = Some(example),
+        _ => panic!("{owner} has no list {property}"),
+    }
+}
+
+fn object<'a>(document: &'a mut OpenApi, name: &str) -> &'a mut Object {
+    match schema_mut(document, name) {
+        Some(Schema::Object(object)) => object,
+        _ => panic!("the document has no schema {name}"),
+    }
 }
 
 /// Adds the details common to all operations.

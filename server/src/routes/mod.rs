@@ -3,7 +3,7 @@
 mod docs;
 mod document;
 
-use crate::kinds::message_kinds;
+use crate::kinds::{event_kinds, message_kinds, notice_kinds};
 use crate::state::ServerState;
 use crate::{dashboard, health};
 use axum::Router;
@@ -13,16 +13,19 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use binnacle_fleet::models::NoModelFields;
 use binnacle_fleet::{
-    alerts, binnacles, card, changes, compasses, deviation_book, deviation_table, enrolment,
-    ingest, logbook, models, operators, overview, particulars, samples, settings, vessel_api,
+    alerts, azimuths, binnacles, card, changes, compasses, deviation_book, deviation_table,
+    enrolment, ingest, logbook, models, operators, overview, particulars, samples, settings,
+    vessel_api,
 };
 use binnacle_orders::work_orders::NotAdjustableFields;
 use binnacle_orders::{api as orders_api, firms};
 use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
 use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers};
 use binnacle_platform::{
-    audit, audit_api, error, event_stream, mail, oidc, session, session_api, users, webhooks,
+    audit, audit_api, error, event_stream, events, mail, oidc, session, session_api, users,
+    webhooks,
 };
+use serde_json::json;
 use std::time::Duration;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::CompressionLayer;
@@ -85,6 +88,7 @@ fn for_agents() -> OpenApiRouter<ServerState> {
         .merge(enrolment::agent_router())
         .merge(ingest::router())
         .merge(logbook::agent_router())
+        .merge(azimuths::agent_router())
 }
 
 fn for_people() -> OpenApiRouter<ServerState> {
@@ -108,6 +112,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(enrolment::router())
         .merge(settings::router())
         .merge(logbook::router())
+        .merge(azimuths::router())
         .merge(models::router())
         .merge(deviation_table::router())
         .merge(card::router())
@@ -146,7 +151,7 @@ fn parts() -> (
     document::add_problem_fields::<NoModelFields>(&mut document);
     document::add_problem_fields::<NotAdjustableFields>(&mut document);
     document::correct_schemas(&mut document);
-    document::list_values(&mut document, "MessageKind", message_kinds().names());
+    list_kinds(&mut document);
     document::complete(&mut document);
     let people = people
         .route("/api/openapi.json", get(docs::document))
@@ -156,6 +161,20 @@ fn parts() -> (
         .layer(CompressionLayer::new())
         .layer(axum::middleware::from_fn(headers::add));
     (agents, people, document)
+}
+
+/// Lists the kinds that the capabilities declare in the schemas of their names.
+fn list_kinds(document: &mut utoipa::openapi::OpenApi) {
+    let events = event_kinds();
+    let names = events.iter().map(events::Kind::name);
+    document::list_values(document, "EventKind", names);
+    document::list_values(document, "MessageKind", message_kinds().names());
+    document::list_values(document, "NotificationKind", notice_kinds().names());
+    for settings in ["NotificationSettings", "NotificationSettingsInForce"] {
+        document::name_properties(document, settings, "ways", "NotificationKind");
+    }
+    let example = alerts::message_kinds::EXAMPLE;
+    document::set_example(document, "NewWebhook", "kinds", json!(example));
 }
 
 async fn no_such_method() -> error::Error {

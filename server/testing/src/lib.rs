@@ -34,7 +34,7 @@ pub use relay::{Behaviour, Encryption, Letter, Relay, Stage};
 pub use server::{DAY_S, HOUR_S, PASSWORD, Prepared, START, TestServer, client};
 pub use ship::{
     Ship, days_at_sea, days_in_waters, enrol_with_code, frame, model_after_step, passage, position,
-    sample, true_model,
+    sample, sun_by_azimuth, true_model,
 };
 
 /// Runs each test on SQLite and on PostgreSQL.

@@ -3,6 +3,7 @@
 use crate::person::Person;
 use crate::relay::{Letter, Relay};
 use crate::server::TestServer;
+use binnacle_fleet::alerts;
 use binnacle_planning::reports;
 use binnacle_platform::config;
 use binnacle_platform::mail::Mailer;
@@ -22,7 +23,7 @@ pub fn mailer(relay: &Relay) -> Mailer {
         mail_from: Some("Binnacle <alerts@binnacle.example>".to_owned()),
         public_url: Some("https://binnacle.example/".to_owned()),
     };
-    let mailer = Mailer::new(&config).unwrap().unwrap();
+    let mailer = Mailer::new(&config, alerts::TOPIC_LIST).unwrap().unwrap();
     let mailer = mailer.with_list(reports::MAILING_LIST);
     mailer.with_patience(PATIENCE)
 }

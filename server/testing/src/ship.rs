@@ -112,6 +112,21 @@ impl Ship {
         let path = format!("/agents/logbook/{id}");
         ApiResponse::send(self.request(reqwest::Method::PUT, &path).json(report)).await
     }
+
+    /// Sends an azimuth as the agent.
+    pub async fn put_azimuth(&self, id: &str, azimuth: &Value) -> ApiResponse {
+        let path = format!("/agents/azimuths/{id}");
+        ApiResponse::send(self.request(reqwest::Method::PUT, &path).json(azimuth)).await
+    }
+}
+
+/// Returns an azimuth: the sun in the forenoon of the day before the tests' present.
+pub fn sun_by_azimuth() -> Value {
+    json!({
+        "time": "2026-11-20T10:00:00Z", "lat": 43.4, "lon": -3.1, "kind": "sun_azimuth",
+        "compass_heading_deg": 92.0, "compass_bearing_deg": 150.0, "gyro_heading_deg": 94.0,
+        "observer": "LW",
+    })
 }
 
 /// Sends an enrolment request.

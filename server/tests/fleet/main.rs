@@ -5,6 +5,7 @@
 mod agent_alerts;
 mod alerts;
 mod analysis;
+mod azimuths;
 mod binnacles;
 mod card;
 mod changes;

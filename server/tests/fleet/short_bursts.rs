@@ -2,7 +2,7 @@
 
 use crate::run;
 use binnacle_compass::sample::Sample;
-use binnacle_fleet::ingest::{ImportResult, IncompleteBatch, import_messages};
+use binnacle_fleet::ingest::{ImportResult, IncompleteBatch, ShortBurst, import_messages};
 use binnacle_platform::ids::VesselId;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::program::assert_refused;
@@ -32,7 +32,10 @@ async fn import_as_files(server: &TestServer, ship: &Ship, messages: &[Vec<u8>])
     let vessel = VesselId(ship.id.parse().unwrap());
     let named = messages.iter().zip(1..);
     let named: Vec<_> = named
-        .map(|(m, n)| (format!("{n}.sbd"), m.clone()))
+        .map(|(bytes, n)| ShortBurst {
+            name: format!("{n}.sbd"),
+            bytes: bytes.clone(),
+        })
         .collect();
     let now = server.app.clock.now().into();
     import_messages(&server.app.db, vessel, &named, now)
@@ -53,7 +56,7 @@ async fn messages_are_reassembled_into_batches_stored_once(server: TestServer) {
     assert_eq!((imported.stored, imported.repeated), (1, 0));
     assert!(imported.incomplete.is_empty() && imported.refused.is_empty());
     assert_eq!(
-        read_ack(&imported.acknowledgements[0].1)
+        read_ack(&imported.acknowledgements[0].bytes)
             .unwrap()
             .contiguous_seq,
         1
@@ -62,7 +65,7 @@ async fn messages_are_reassembled_into_batches_stored_once(server: TestServer) {
     let imported = import_as_files(&server, &nao, &messages).await;
     assert_eq!((imported.stored, imported.repeated), (1, 1));
     assert_eq!(
-        read_ack(&imported.acknowledgements[0].1)
+        read_ack(&imported.acknowledgements[0].bytes)
             .unwrap()
             .contiguous_seq,
         2

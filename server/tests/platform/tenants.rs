@@ -4,7 +4,7 @@ use binnacle_server::routes::openapi;
 use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::port_calls::{call, path as calls_of};
-use binnacle_server_testing::{ApiResponse, TestServer};
+use binnacle_server_testing::{ApiResponse, TestServer, sun_by_azimuth};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -32,6 +32,7 @@ fn operations() -> Vec<(Method, String, Value)> {
                 }
                 (&Method::PUT, "/vessels/{id}/settings") => settings(),
                 (&Method::POST, "/vessels/{id}/logbook") => lightning(),
+                (&Method::POST, "/vessels/{id}/azimuths") => sun_by_azimuth(),
                 (&Method::POST, "/vessels/{id}/port-calls") => call("NLRTM", 20),
                 (&Method::PUT, "/vessels/{id}/compasses/{compass}/binnacle") => binnacle(),
                 _ => json!({}),
@@ -67,6 +68,8 @@ async fn every_vessel_route_is_not_found_for_another_operator(server: TestServer
     let compass = compasses["items"][0]["id"].as_str().unwrap();
     let logbook = format!("/vessels/{id}/logbook");
     let entry = ada.post(&logbook, &lightning()).await.good()["id"].clone();
+    let azimuths = format!("/vessels/{id}/azimuths");
+    let azimuth = ada.post(&azimuths, &sun_by_azimuth()).await.good()["id"].clone();
     let calls = calls_of(&json!({ "id": id }));
     let port_call = ada.post(&calls, &call("NLRTM", 8)).await.good()["id"].clone();
     let kept = format!("/vessels/{id}/compasses/{compass}/binnacle");
@@ -77,6 +80,7 @@ async fn every_vessel_route_is_not_found_for_another_operator(server: TestServer
         }
         let path = path.replace("{id}", &id);
         let path = path.replace("{entry}", entry.as_str().unwrap());
+        let path = path.replace("{azimuth}", azimuth.as_str().unwrap());
         let path = path.replace("{call}", port_call.as_str().unwrap());
         let path = path.replace("{agent}", agent);
         let path = path.replace("{compass}", compass);
@@ -109,6 +113,7 @@ async fn every_route_needs_authentication(server: TestServer) {
         let path = path
             .replace("{id}", &id)
             .replace("{entry}", &id)
+            .replace("{azimuth}", &id)
             .replace("{call}", &id)
             .replace("{agent}", &id)
             .replace("{compass}", &id)

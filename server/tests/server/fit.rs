@@ -83,3 +83,25 @@ fn help_describes_the_methods() {
     let refused = run(folder.path(), &["fit", "x.csv", "--method", "magic"]);
     assert_eq!(refused.status.code(), Some(2));
 }
+
+#[test]
+fn a_bad_value_beside_the_headings_is_refused_by_line_and_column() {
+    let folder = tempfile::tempdir().unwrap();
+    let columns = "variation_deg,h_nt,z_nt,compass_deg,gyro_deg";
+    for (column, value) in [
+        ("cog_deg", "361"),
+        ("rate_of_turn_deg_min", "east"),
+        ("roll_deg", "-91"),
+        ("roll_spread_deg", "-1"),
+        ("temperature_c", "273"),
+        ("gyro_source", "1.5"),
+        ("satellite_source", "70000"),
+    ] {
+        let text = format!("{columns},{column}\n-3,24000,38000,10,9,{value}\n");
+        std::fs::write(folder.path().join("bad.csv"), text).unwrap();
+        for command in ["fit", "analyse"] {
+            let refused = run(folder.path(), &[command, "bad.csv"]);
+            assert_refused(&refused, &[&format!("bad.csv:2: {column}: ")]);
+        }
+    }
+}

@@ -1,7 +1,16 @@
 /** Alerts, who is told of them, and what changed. */
 import assert from 'node:assert/strict';
 import { findings } from '../axe.mjs';
-import { phone, notSignedIn, signIn, withModel, struck, limit, fitsItsWidth } from '../helpers.mjs';
+import {
+  phone,
+  notSignedIn,
+  signIn,
+  goToVessel,
+  withModel,
+  struck,
+  limit,
+  fitsItsWidth,
+} from '../helpers.mjs';
 
 export const alerts = {
   'an alert comes live, is acknowledged and cleared': {
@@ -103,7 +112,7 @@ export const alerts = {
       const vessel = await withModel(page);
       const path = `/api/v1/vessels/${vessel.id}/settings`;
       const before = await (await page.request.get(path)).json();
-      await page.goto(`/vessels/${vessel.id}#limits`);
+      await goToVessel(page, vessel.id, '#limits');
       const panel = page.getByRole('region', { name: 'Alert limits and settings' });
       await panel.getByRole('button', { name: 'Change the settings' }).click();
       const deviation = panel.getByLabel('Deviation, °');
@@ -298,7 +307,7 @@ export const alerts = {
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
       const vessel = await struck(page);
-      await page.goto(`/vessels/${vessel.id}`);
+      await goToVessel(page, vessel.id);
       const changes = page.getByRole('region', { name: 'What changed' });
       const change = changes.getByRole('listitem').filter({ hasText: 'Lightning or a shock' });
       await change.first().waitFor();
@@ -353,7 +362,7 @@ export const alerts = {
       const { id: other } = await struck(page);
       const listed = await (await page.request.get('/api/v1/vessels')).json();
       const calm = listed.items.find((vessel) => vessel.model && vessel.id !== other);
-      await page.goto(`/vessels/${calm.id}`);
+      await goToVessel(page, calm.id);
       const changes = page.getByRole('region', { name: 'What changed' });
       await changes.getByText(/^No change found since \d{1,2} [A-Z][a-z]{2} 20\d\d/).waitFor();
       await shoot('changes-none', {}, changes);

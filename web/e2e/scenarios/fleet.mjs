@@ -1,6 +1,14 @@
 /** Which ships need someone today: the map, the table and the views of them. */
 import assert from 'node:assert/strict';
-import { fitsItsWidth, fleetIsShown, notSignedIn, phone, signIn, withModel } from '../helpers.mjs';
+import {
+  fitsItsWidth,
+  fleetIsShown,
+  notSignedIn,
+  phone,
+  signIn,
+  goToVessel,
+  withModel,
+} from '../helpers.mjs';
 
 const names = (page) => page.getByRole('rowheader').getByRole('link').allInnerTexts();
 const map = (page) => page.getByRole('application', { name: 'Map of the fleet' });
@@ -137,7 +145,7 @@ export const fleet = {
         .count();
       assert.equal(needs, 0, 'a vessel of which it is not known needs nothing');
       await shoot('fleet-dues-unknown');
-      await page.goto(`/vessels/${id}`);
+      await goToVessel(page, id);
       await page.getByText('What she needs could not be found out in full').waitFor();
       await page.unrouteAll();
       await page.getByRole('button', { name: 'Try again' }).click();

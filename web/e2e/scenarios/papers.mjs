@@ -1,6 +1,6 @@
 /** The deviation card and the deviation book. */
 import assert from 'node:assert/strict';
-import { phone, notSignedIn, signIn, openVessel, fitsItsWidth } from '../helpers.mjs';
+import { phone, notSignedIn, signIn, goToVessel, openVessel, fitsItsWidth } from '../helpers.mjs';
 
 /** A card that is refused is a 409 in the console. */
 const refused = /status of 409 .*\/card\.json/;
@@ -91,7 +91,7 @@ export const papers = {
           }),
         }),
       );
-      await page.goto(`/vessels/${vessel.id}`);
+      await goToVessel(page, vessel.id);
       const needs = page.getByRole('region', { name: 'What she needs' });
       await needs.locator(`a[href="/alerts#${id}"]`).waitFor();
       const card = cardOf(page);

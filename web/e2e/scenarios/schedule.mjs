@@ -8,6 +8,7 @@ import {
   notSignedIn,
   phone,
   signIn,
+  goToVessel,
   signInAs,
   struck,
 } from '../helpers.mjs';
@@ -140,7 +141,7 @@ export const schedule = {
       await shoot('schedule', { fullPage: true });
 
       // From her own page the way leads to the job that is proposed for her.
-      await page.goto(`/vessels/${hit.id}`);
+      await goToVessel(page, hit.id);
       await page
         .getByTestId('needs')
         .getByRole('link', { name: /^Proposed: .* Rotterdam/ })

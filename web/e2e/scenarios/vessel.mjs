@@ -4,6 +4,7 @@ import {
   phone,
   notSignedIn,
   signIn,
+  goToVessel,
   openVessel,
   chart,
   curve,
@@ -439,7 +440,7 @@ export const vessel = {
           note: words,
         });
       await note(1, 'The oldest');
-      await page.goto(`/vessels/${id}`);
+      await goToVessel(page, id);
       const logbook = page.getByRole('region', { name: 'Logbook' });
       const oldest = logbook.getByRole('listitem').filter({ hasText: 'The oldest' });
       await oldest.getByRole('button', { name: /^Amend/ }).click();

@@ -10,8 +10,10 @@ import { Problem, readProblem } from './problem';
 import type { paths } from './schema';
 import type {
   Alert,
+  Azimuth,
   LogbookEntry,
   MailRecipient,
+  NewAzimuth,
   NewEntry,
   NewMailRecipient,
   NewVessel,
@@ -226,6 +228,36 @@ export const withdrawEntry = (id: string, entry: string, reason: string) =>
   answer(
     client.POST('/api/v1/vessels/{id}/logbook/{entry}/withdraw', {
       params: { path: { id, entry } },
+      body: { reason },
+    }),
+  );
+
+/** A vessel's azimuths, the latest first; at most so many. */
+export async function listAzimuths(
+  id: string,
+  most: number,
+): Promise<{ items: Azimuth[]; truncated: boolean }> {
+  const found = await answer(
+    client.GET('/api/v1/vessels/{id}/azimuths', {
+      params: { path: { id }, query: page(most) },
+    }),
+  );
+  return { items: found.items, truncated: found.next !== null };
+}
+
+/** Enters an azimuth; under the same key the same azimuth is entered once. */
+export const enterAzimuth = (id: string, body: NewAzimuth, key: string) =>
+  answer(
+    client.POST('/api/v1/vessels/{id}/azimuths', {
+      params: { path: { id }, header: { 'Idempotency-Key': key } },
+      body,
+    }),
+  );
+
+export const withdrawAzimuth = (id: string, azimuth: string, reason: string) =>
+  answer(
+    client.POST('/api/v1/vessels/{id}/azimuths/{azimuth}/withdraw', {
+      params: { path: { id, azimuth } },
       body: { reason },
     }),
   );

@@ -20,6 +20,8 @@ export class Problem extends Error {
     readonly leftOut?: LeftOut,
     /** What is wrong at the berth and what would cure it, in `not-adjustable`. */
     readonly refusals: AdjustmentRefusal[] = [],
+    /** The field that is refused, as the document names it, in `invalid`. */
+    readonly field?: string,
   ) {
     super(detail);
   }
@@ -39,7 +41,8 @@ export function readProblem(status: number, body: unknown): Problem {
       : text.problem.unexpected(status);
   const kind = type.split('/').at(-1) ?? '';
   const words = kind === 'invalid' ? invalidInWords(detail) : detail;
-  return new Problem(status, kind, dated(words), ...reasonsIn(about));
+  const field = kind === 'invalid' ? /^(\w+): /.exec(detail)?.[1] : undefined;
+  return new Problem(status, kind, dated(words), ...reasonsIn(about), field);
 }
 
 function reasonsIn(

@@ -4,6 +4,27 @@
  */
 
 export interface paths {
+    "/api/v1/agents/azimuths/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Send an azimuth from on board
+         * @description Responds when it is durable. The same azimuth again changes nothing and gets the same
+         *     response; with `withdrawn` it is withdrawn for good.
+         */
+        put: operations["put_azimuth"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/agents/enrol": {
         parameters: {
             query?: never;
@@ -1608,6 +1629,69 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/vessels/{id}/azimuths": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List a vessel's azimuths
+         * @description The latest first. Withdrawn ones stay in the list, marked.
+         */
+        get: operations["list_azimuths"];
+        put?: never;
+        /**
+         * Enter an azimuth
+         * @description The response has the compass error and the gyro error. An observation that is possible and
+         *     unlikely is refused with a problem that begins with `confirmed:`; with `confirmed` true it is
+         *     accepted.
+         */
+        post: operations["observe_azimuth"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/azimuths/{azimuth}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See an azimuth */
+        get: operations["find_azimuth"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/azimuths/{azimuth}/withdraw": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Withdraw an azimuth
+         * @description It stays in the list, marked, and no longer counts. Withdrawing it again changes nothing.
+         */
+        post: operations["withdraw_azimuth"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/vessels/{id}/card.csv": {
         parameters: {
             query?: never;
@@ -1861,7 +1945,8 @@ export interface paths {
          * Read a compass's deviation book
          * @description An entry for the first settled stretch of heading in each watch of four hours, and
          *     for the first after each alteration of course by 20° or more. Watches in which none
-         *     was observed, as in port, have none. `card_status` says what the card of the time was
+         *     was observed, as in port, have none. Each azimuth that an officer observed is an entry
+         *     with the officer's initials. `card_status` says what the card of the time was
          *     worth then: `predicted`, or `verified` from when headings at sea had verified the
          *     adjustment that it comes from.
          */
@@ -3416,6 +3501,194 @@ export interface components {
             /** @description Value of `after` for the next page. */
             next: string | null;
         };
+        /**
+         * @description Reason for caution with an observation.
+         * @enum {string}
+         */
+        AzimuthCaution: "high_altitude" | "grazing_horizon" | "alongside";
+        /** @description An azimuth of a vessel, with its errors. */
+        AzimuthEntry: components["schemas"]["AzimuthReport"] & {
+            /** @description Place of its author. */
+            author: components["schemas"]["LogbookAuthor"];
+            /** @description The compass that was observed. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description Time at which the server received it. */
+            created_at: components["schemas"]["Time"];
+            /** @description Name of the person who entered it; the observer's initials for one from on board. */
+            created_by: string;
+            /** @description The azimuth's id. */
+            id: components["schemas"]["AzimuthId"];
+            /** @description Compass error and gyro error. */
+            result: components["schemas"]["AzimuthResult"];
+            /** @description Reason for the withdrawal. */
+            withdrawal_reason: string | null;
+            withdrawn_at: components["schemas"]["Time"] | null;
+            /** @description Person who withdrew it. */
+            withdrawn_by: string | null;
+        };
+        /**
+         * Format: uuid
+         * @description Id of an azimuth.
+         */
+        AzimuthId: string;
+        /**
+         * @description Object of a bearing.
+         * @enum {string}
+         */
+        AzimuthKind: "sun_azimuth" | "sun_amplitude" | "body" | "transit" | "quay";
+        /** @description A page of a vessel's azimuths. */
+        AzimuthList: {
+            /** @description Azimuths, the latest first. */
+            items: components["schemas"]["AzimuthEntry"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /**
+         * @description Observation of a compass error, field by field, before it is checked.
+         *
+         *     A bearing is taken with the compass or with a gyro repeater, or with both. Fields that
+         *     the kind does not use are absent.
+         */
+        AzimuthObservation: {
+            /**
+             * Format: double
+             * @description Altitude of the body, degrees, if known.
+             */
+            altitude_deg?: number | null;
+            /**
+             * Format: double
+             * @description Bearing by the magnetic compass, degrees.
+             * @example 118.5
+             */
+            compass_bearing_deg?: number | null;
+            /**
+             * Format: double
+             * @description Raw heading of the magnetic compass in that moment, degrees.
+             * @example 92.4
+             */
+            compass_heading_deg: number;
+            /**
+             * @description Confirmation of values that were questioned.
+             * @default false
+             */
+            confirmed: boolean;
+            /**
+             * Format: double
+             * @description Bearing by a gyro repeater, degrees.
+             */
+            gyro_bearing_deg?: number | null;
+            /**
+             * Format: double
+             * @description Heading of the gyro in that moment, degrees.
+             * @example 95
+             */
+            gyro_heading_deg?: number | null;
+            /**
+             * Format: double
+             * @description Height of eye above the water, metres, for the sun on the visible horizon.
+             * @example 24
+             */
+            height_of_eye_m?: number | null;
+            horizon?: components["schemas"]["HorizonSight"] | null;
+            /** @description Object of the bearing. */
+            kind: components["schemas"]["AzimuthKind"];
+            /**
+             * Format: double
+             * @description Degrees north.
+             * @example 43.4
+             */
+            lat: number;
+            /**
+             * Format: double
+             * @description Degrees east.
+             * @example -3.1
+             */
+            lon: number;
+            /**
+             * @description Name of the body, the transit or the quay.
+             * @example Vega
+             */
+            name?: string | null;
+            /** @description Time of the bearing, to the second. */
+            time: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description True bearing of the body or the transit; for a quay, true heading of the vessel
+             *     alongside.
+             */
+            true_bearing_deg?: number | null;
+        };
+        /** @description An observation of the compass error, and its observer. */
+        AzimuthReport: components["schemas"]["AzimuthObservation"] & {
+            /**
+             * @description The observer's initials.
+             * @example LW
+             */
+            observer: string;
+            /**
+             * @description The observer's own words.
+             * @default
+             */
+            remark: string;
+        };
+        /** @description Result of an observation. Errors are true less indicated, degrees, east positive. */
+        AzimuthResult: {
+            /**
+             * Format: double
+             * @description Altitude of the body's centre without refraction; none for a mark on land.
+             * @example 18.2
+             */
+            altitude_deg: number | null;
+            /** @description Reasons for caution. */
+            cautions: components["schemas"]["AzimuthCaution"][];
+            /**
+             * Format: double
+             * @description Compass error: true less compass.
+             * @example 2.8
+             */
+            compass_error_deg: number;
+            /**
+             * Format: double
+             * @description Deviation: compass error less variation.
+             * @example 2.4
+             */
+            deviation_deg: number;
+            /**
+             * Format: double
+             * @description Gyro error: true less gyro; none when no reading of the gyro is given.
+             * @example 0.2
+             */
+            gyro_error_deg: number | null;
+            /**
+             * Format: double
+             * @description Standard error of these errors, degrees.
+             * @example 0.6
+             */
+            standard_error_deg: number;
+            /**
+             * Format: double
+             * @description True bearing of the object; for a quay, true heading of the vessel.
+             * @example 121.3
+             */
+            true_bearing_deg: number;
+            /**
+             * Format: double
+             * @description True heading of the vessel: compass heading plus compass error.
+             * @example 95.2
+             */
+            true_heading_deg: number;
+            /**
+             * Format: double
+             * @description Variation at that place and time, by IGRF-14.
+             * @example 0.4
+             */
+            variation_deg: number;
+        };
+        /** @description Reason for which an azimuth is withdrawn. */
+        AzimuthWithdrawal: {
+            /** @description In a few words. */
+            reason?: string | null;
+        };
         /** @description Half the width of the 95 % band over all headings in some waters, degrees. */
         Band: {
             /**
@@ -3704,6 +3977,25 @@ export interface components {
             next: string | null;
         };
         /**
+         * @description An azimuth observed on board, under an id made there: the request of `PUT
+         *     /api/v1/agents/azimuths/{id}`.
+         *
+         *     An observation never changes: a wrong one is withdrawn. It may be sent until it is
+         *     acknowledged: repeating it changes nothing.
+         */
+        BoardAzimuth: components["schemas"]["AzimuthReport"] & {
+            /**
+             * @description True when the observer withdraws it.
+             * @default false
+             */
+            withdrawn: boolean;
+        };
+        /** @description The response to a [`BoardAzimuth`]. */
+        BoardAzimuthAnswer: {
+            /** @description True when it was withdrawn, on board or in the office. */
+            withdrawn: boolean;
+        };
+        /**
          * @description An officer's report, complete, under an id made on board: the request of
          *     `PUT /api/v1/agents/logbook/{id}`.
          *
@@ -3741,17 +4033,17 @@ export interface components {
          * @description Observer of a compass error.
          * @enum {string}
          */
-        BookObserver: "automatic";
+        BookObserver: "automatic" | "officer";
         /**
          * @description Occasion of an entry.
          * @enum {string}
          */
-        BookOccasion: "watch" | "alteration";
+        BookOccasion: "watch" | "alteration" | "azimuth";
         /**
          * @description Reference of a true heading.
          * @enum {string}
          */
-        BookReference: "gyro" | "satellite" | "gyro_and_satellite";
+        BookReference: "gyro" | "satellite" | "gyro_and_satellite" | "sun_azimuth" | "sun_amplitude" | "body" | "transit" | "quay";
         /** @description A position of the pair on the brackets. */
         BracketMark: {
             /**
@@ -4596,8 +4888,9 @@ export interface components {
             /** @description `after` of the next page. */
             next: string | null;
         };
-        /** @description A compass error that was observed under way. */
+        /** @description A compass error that was observed. */
         DeviationBookEntry: {
+            azimuth_id: components["schemas"]["AzimuthId"] | null;
             /**
              * Format: double
              * @description Half the width of its 95 % band, degrees.
@@ -4619,6 +4912,12 @@ export interface components {
             compass_deg: number;
             /**
              * Format: double
+             * @description Compass error: deviation plus variation, degrees, east positive.
+             * @example 2.7
+             */
+            compass_error_deg: number;
+            /**
+             * Format: double
              * @description Observed deviation, degrees, east positive.
              * @example 2.3
              */
@@ -4635,6 +4934,17 @@ export interface components {
              * @example 95
              */
             gyro_deg: number | null;
+            /**
+             * Format: double
+             * @description Gyro error by an azimuth: true less gyro, degrees, east positive.
+             * @example 0.2
+             */
+            gyro_error_deg: number | null;
+            /**
+             * @description Initials of the officer who observed an azimuth.
+             * @example LW
+             */
+            initials: string | null;
             /**
              * Format: double
              * @description Degrees north.
@@ -4661,6 +4971,8 @@ export interface components {
             reason: components["schemas"]["SampleReason"] | null;
             /** @description Reference of the true heading. */
             reference: components["schemas"]["BookReference"];
+            /** @description Remark of that officer. */
+            remark: string | null;
             /**
              * Format: double
              * @description The satellite compass's heading.
@@ -4672,7 +4984,7 @@ export interface components {
              * @example 0.3
              */
             spread_deg: number | null;
-            /** @description The middle of the stretch. */
+            /** @description The middle of the stretch; for an azimuth, its moment. */
             time: components["schemas"]["Time"];
             /**
              * Format: double
@@ -5439,6 +5751,11 @@ export interface components {
             /** @description Direction of the red ends: up or down. */
             red: components["schemas"]["RedEnd"];
         };
+        /**
+         * @description Part of the sun on the horizon in the moment of the bearing.
+         * @enum {string}
+         */
+        HorizonSight: "celestial" | "upper_limb" | "lower_limb" | "centre";
         /** @description Parameters determined by the data; a `false` one rests on the prior. */
         Identifiable: {
             /** @description bx separately from χ13 Z. */
@@ -6055,6 +6372,10 @@ export interface components {
             compass_deg: number[];
             /** @description Number of headings. */
             count: number;
+        };
+        /** @description An azimuth to be entered. */
+        NewAzimuth: components["schemas"]["AzimuthReport"] & {
+            compass_id?: components["schemas"]["CompassId"] | null;
         };
         /**
          * @description Calendar feed to create.
@@ -7883,6 +8204,11 @@ export interface components {
         Sample: {
             /**
              * Format: double
+             * @description Mean course over ground.
+             */
+            cog_deg?: number | null;
+            /**
+             * Format: double
              * @description Mean raw compass heading.
              */
             compass_deg: number;
@@ -7896,6 +8222,11 @@ export interface components {
              * @description Mean gyro heading, as the gyro gave it.
              */
             gyro_deg: number | null;
+            /**
+             * Format: int32
+             * @description Instrument that gave the gyro heading.
+             */
+            gyro_source?: number | null;
             /**
              * Format: double
              * @description Horizontal field, nT.
@@ -7929,9 +8260,24 @@ export interface components {
             residual_deg: number | null;
             /**
              * Format: double
+             * @description Mean roll in degrees, starboard side down positive.
+             */
+            roll_deg?: number | null;
+            /**
+             * Format: double
+             * @description Standard deviation of roll in degrees.
+             */
+            roll_spread_deg?: number | null;
+            /**
+             * Format: double
              * @description Mean satellite-compass heading.
              */
             satellite_deg: number | null;
+            /**
+             * Format: int32
+             * @description Instrument that gave the satellite-compass heading.
+             */
+            satellite_source?: number | null;
             /**
              * Format: double
              * @description Speed over ground in knots.
@@ -7942,6 +8288,11 @@ export interface components {
              * @description Standard deviation, in degrees, of compass less reference among the windows.
              */
             spread_deg: number | null;
+            /**
+             * Format: double
+             * @description Mean temperature at the compass or around it, in degrees Celsius.
+             */
+            temperature_c?: number | null;
             /** @description The middle of the stretch, UTC. */
             time: components["schemas"]["Time"];
             /** @description Used: it had weight in a model. */
@@ -9082,6 +9433,87 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
+    put_azimuth: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Made on board */
+                id: components["schemas"]["AzimuthId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BoardAzimuth"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BoardAzimuthAnswer"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     enrol: {
         parameters: {
             query?: never;
@@ -15486,6 +15918,318 @@ export interface operations {
             };
             /** @description Not Found */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_azimuths: {
+        parameters: {
+            query?: {
+                /** @description Of this compass only. */
+                compass?: components["schemas"]["CompassId"];
+                /** @description Observed at this instant or later, RFC 3339. */
+                from?: string;
+                /** @description Observed before this instant, RFC 3339. */
+                to?: string;
+                /** @description Includes withdrawn azimuths; true by default. */
+                withdrawn?: boolean;
+                /** @description Maximum number of items; 100 by default. */
+                limit?: number;
+                /** @description `next` of the previous page. */
+                after?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AzimuthList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    observe_azimuth: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Key of the request; the same request with the same key creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewAzimuth"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AzimuthEntry"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_azimuth: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                azimuth: components["schemas"]["AzimuthId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AzimuthEntry"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    withdraw_azimuth: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                azimuth: components["schemas"]["AzimuthId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["AzimuthWithdrawal"] | null;
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AzimuthEntry"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
                 headers: {
                     [name: string]: unknown;
                 };

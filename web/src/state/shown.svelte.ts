@@ -14,6 +14,7 @@ import {
   findTimeline,
   findVessel,
   listAgents,
+  listAzimuths,
   listCallsSince,
   listLogbook,
   listLogbookSince,
@@ -25,6 +26,7 @@ import { findSchedule } from '../api/schedule';
 import type {
   AdjustmentNeed,
   AgentStream,
+  Azimuth,
   Coverage,
   FleetVessel,
   LogbookEntry,
@@ -45,7 +47,7 @@ import { Resource } from './resource.svelte';
 import { times } from './times.svelte';
 
 const dayMs = 86_400_000;
-/** Lines of the logbook at first, and more at a time. */
+/** Lines of the logbook and azimuths at first, and more at a time. */
 const logbookStep = 20;
 /** A fleet that catches up sends many batches; the page follows at its own pace. */
 const [lightMs, heavyMs] = [1_500, 3_000];
@@ -63,6 +65,7 @@ export class ShownVessel {
   timeline = new Resource<Timeline>();
   agents = new Resource<AgentStream[]>();
   logbook = new Resource<{ items: LogbookEntry[]; truncated: boolean }>();
+  azimuths = new Resource<{ items: Azimuth[]; truncated: boolean }>();
   /** What was reported and where she called in the period that is shown. */
   happened = new Resource<{ entries: LogbookEntry[]; calls: PortCall[] }>();
   /** The order that foretold the model, if one did. */
@@ -72,6 +75,7 @@ export class ShownVessel {
   /** Days of residuals. */
   period = $state(90);
   #logbookLines = logbookStep;
+  #azimuthLines = logbookStep;
 
   readonly id: string;
   #named: string | undefined;
@@ -106,6 +110,7 @@ export class ShownVessel {
   loadPicture = () => this.picture.load(() => findPicture(this.id, this.#since(), this.compass));
   loadAgents = () => this.agents.load(() => listAgents(this.id));
   loadLogbook = () => this.logbook.load(() => listLogbook(this.id, this.#logbookLines));
+  loadAzimuths = () => this.azimuths.load(() => listAzimuths(this.id, this.#azimuthLines));
 
   /** All of it; what is seen first is drawn before the rest is asked for. */
   loadAll = async (): Promise<void> => {
@@ -121,6 +126,7 @@ export class ShownVessel {
     this.#loadScience();
     void this.loadAgents();
     void this.loadLogbook();
+    void this.loadAzimuths();
     // Only what is due is planned.
     if (this.needs.value?.length) void this.loadPlan();
   };
@@ -138,7 +144,10 @@ export class ShownVessel {
     const stop = live.listen((news) => {
       if (news.vesselId !== null && news.vesselId !== this.id) return;
       light.call();
-      if (news.kind === 'logbook' || news.kind === 'all') void this.loadLogbook();
+      if (news.kind === 'logbook' || news.kind === 'all') {
+        void this.loadLogbook();
+        void this.loadAzimuths();
+      }
       if (['logbook', 'port_call'].includes(news.kind)) void this.#loadHappened();
       if (news.kind === 'work_order' || news.kind === 'all') {
         void this.loadOrders();
@@ -171,6 +180,11 @@ export class ShownVessel {
   showEarlier = (): void => {
     this.#logbookLines += logbookStep;
     void this.loadLogbook();
+  };
+
+  showEarlierAzimuths = (): void => {
+    this.#azimuthLines += logbookStep;
+    void this.loadAzimuths();
   };
 
   #loadScience(): void {

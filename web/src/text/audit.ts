@@ -5,6 +5,7 @@ const reads = (what: string) => `Read ${what} of an order`;
 const deeds: Record<string, string> = {
   'POST /agents/enrol': 'Enrolled an agent',
   'PUT /agents/logbook/{id}': 'Sent a report from on board',
+  'PUT /agents/azimuths/{id}': 'Sent an azimuth from on board',
   'POST /agents/token': 'Made the agent’s next token',
   'PUT /agents/token': 'Took the agent’s next token',
   'POST /streams': 'Opened a new stream',
@@ -68,6 +69,8 @@ const deeds: Record<string, string> = {
   'POST /vessels/{id}/compasses': 'Entered a compass',
   'PATCH /vessels/{id}/compasses/{compass}': 'Amended a compass',
   'PUT /vessels/{id}/compasses/{compass}/binnacle': 'Described a binnacle',
+  'POST /vessels/{id}/azimuths': 'Entered an azimuth',
+  'POST /vessels/{id}/azimuths/{azimuth}/withdraw': 'Withdrew an azimuth',
   'POST /vessels/{id}/logbook': 'Wrote into the logbook',
   'PATCH /vessels/{id}/logbook/{entry}': 'Amended a logbook entry',
   'POST /vessels/{id}/logbook/{entry}/withdraw': 'Withdrew a logbook entry',

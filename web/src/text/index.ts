@@ -7,6 +7,7 @@
 
 export * from './alerts';
 export * from './audit';
+export * from './azimuths';
 export * from './berth';
 export * from './binnacles';
 export * from './changes';

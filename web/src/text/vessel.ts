@@ -33,6 +33,7 @@ export const vesselParts = {
   particulars: 'Particulars',
   limits: 'Limits',
   book: 'Deviation book',
+  azimuths: 'Azimuths',
   logbook: 'Logbook',
   coverage: 'Coverage',
   parameters: 'Magnetism',

@@ -17,7 +17,7 @@ use super::acknowledged;
 use super::database::{Spool, get, put};
 use super::keys::THINNED;
 use binnacle_compass::sample::Sample;
-use binnacle_wire::batch::Thinned;
+use binnacle_wire::batch::{Batch, Thinned};
 use selection::{MAX_LEVEL, select_rows, thin, thinned_sample};
 use sqlx::SqliteConnection;
 
@@ -134,7 +134,7 @@ async fn thin_batches(tx: &mut SqliteConnection, min_bytes: usize) -> sqlx::Resu
     .await?;
     for (seq, bytes, level) in &rows {
         let level = level + 1;
-        let (bytes, samples) = match thin_batch(bytes, level) {
+        let (bytes, samples) = match thin_batch(bytes, level, min_bytes) {
             Ok(thin_batch) => thin_batch,
             Err(problem) => {
                 tracing::error!(seq, problem, "a batch cannot be thinned");
@@ -160,18 +160,35 @@ async fn thin_batches(tx: &mut SqliteConnection, min_bytes: usize) -> sqlx::Resu
     Ok(rows.len())
 }
 
-/// Returns a batch with fewer samples, and their number.
-fn thin_batch(bytes: &[u8], level: i64) -> Result<(Vec<u8>, i64), String> {
+/// Returns a batch with fewer samples, and their number. What must fit into `max_bytes`, if not
+/// zero, and does not, loses course, roll and temperature.
+fn thin_batch(bytes: &[u8], level: i64, max_bytes: usize) -> Result<(Vec<u8>, i64), String> {
     let mut batch = binnacle_wire::decode(bytes).map_err(|e| e.to_string())?;
+    let encode = |batch: &Batch| binnacle_wire::encode(batch).map_err(|e| e.to_string());
     let before = std::mem::take(&mut batch.samples);
     let (kept, dropped) = thin(before, level);
-    if dropped.samples == 0 {
-        return Ok((bytes.to_vec(), count(&kept)));
-    }
     batch.samples = kept;
-    batch.thinned = Some(add(batch.thinned.unwrap_or_default(), dropped));
-    let bytes = binnacle_wire::encode(&batch).map_err(|e| e.to_string())?;
-    Ok((bytes, count(&batch.samples)))
+    let mut thinned = bytes.to_vec();
+    if dropped.samples > 0 {
+        batch.thinned = Some(add(batch.thinned.unwrap_or_default(), dropped));
+        thinned = encode(&batch)?;
+    }
+    if max_bytes > 0 && thinned.len() > max_bytes {
+        batch.samples.iter_mut().for_each(keep_headings);
+        thinned = encode(&batch)?;
+    }
+    Ok((thinned, count(&batch.samples)))
+}
+
+/// Removes what a model can be made without.
+fn keep_headings(sample: &mut Sample) {
+    *sample = Sample {
+        cog: None,
+        roll_deg: None,
+        roll_spread_deg: None,
+        temperature_c: None,
+        ..*sample
+    };
 }
 
 /// Thins pending samples when there are too many. Returns the number of dropped ones.

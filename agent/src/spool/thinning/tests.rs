@@ -1,9 +1,10 @@
 //! Thinning on a real file.
 
 use super::*;
-use crate::spool::tests::{accepted, alert, identity, restless, sample};
+use crate::spool::tests::{accepted, alert, enrolled, identity, restless, sample};
 use crate::spool::{Seal, Spool};
-use binnacle_wire::batch::Batch;
+use binnacle_compass::angle::CourseOverGround;
+use binnacle_compass::sample::SourceId;
 use std::collections::BTreeSet;
 use tempfile::TempDir;
 
@@ -46,13 +47,13 @@ fn windows(batch: &Batch) -> u64 {
 
 #[tokio::test]
 async fn a_full_spool_thins_and_says_so_and_every_window_is_accounted_for() {
-    let (_directory, spool) = stuffed(300).await;
+    let (_directory, spool) = stuffed(400).await;
     let before = spool.status().await.unwrap().used_bytes;
     let limit = before / 2;
     spool.shrink_to_limit(limit).await.unwrap();
     assert!(spool.status().await.unwrap().used_bytes <= limit);
     let batches = all(&spool).await;
-    assert_eq!(batches.len(), 300);
+    assert_eq!(batches.len(), 400);
     for (batch, seq) in batches.iter().zip(1..) {
         assert_eq!(batch.seq, seq);
         assert_eq!(windows(batch), batch.tally["accepted"]);
@@ -145,6 +146,34 @@ async fn a_batch_that_was_thinned_after_it_was_read_is_not_sent_as_it_was() {
     let fresh = spool.next_batch().await.unwrap().unwrap();
     assert_ne!(fresh.bytes, stale.bytes);
     assert!(spool.mark_tried(&fresh).await.unwrap());
+}
+
+#[tokio::test]
+async fn a_batch_that_must_fit_loses_course_roll_and_temperature_before_samples() {
+    let (_directory, spool) = enrolled().await;
+    let samples: Vec<Sample> = (0..60)
+        .map(|i| Sample {
+            cog: CourseOverGround::new(f64::from(i * 37 % 360)),
+            roll_deg: Some(f64::from(i * 13 % 17)),
+            roll_spread_deg: Some(f64::from(i * 7 % 11)),
+            temperature_c: Some(f64::from(i * 5 % 23)),
+            gyro_source: Some(SourceId::from_name("gyro 1")),
+            ..sample(i64::from(i) * 10)
+        })
+        .collect();
+    let tally = accepted(60 * 60);
+    spool.store(&samples, &tally, Seal::All).await.unwrap();
+    let whole = binnacle_wire::encode(&all(&spool).await[0]).unwrap().len();
+    spool.thin_batches_to(whole).await.unwrap();
+    assert!(all(&spool).await[0].samples[0].cog.is_some());
+    spool.thin_batches_to(whole - 1).await.unwrap();
+    let batch = &all(&spool).await[0];
+    assert_eq!((batch.samples.len(), batch.thinned), (60, None));
+    for kept in &batch.samples {
+        assert_eq!((kept.cog, kept.temperature_c), (None, None));
+        assert_eq!((kept.roll_deg, kept.roll_spread_deg), (None, None));
+        assert!(kept.gyro.is_some() && kept.gyro_source.is_some());
+    }
 }
 
 #[tokio::test]

@@ -1,6 +1,7 @@
 //! The uplink against a fake server on a real socket.
 
 mod alerts;
+mod azimuths;
 mod batches;
 mod budget;
 mod connection;
@@ -21,7 +22,7 @@ use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
 use binnacle_wire::batch::StreamId;
-use binnacle_wire::messages::{CardWithdrawn, Downlink, LogbookReport, Settings};
+use binnacle_wire::messages::{BoardAzimuth, CardWithdrawn, Downlink, LogbookReport, Settings};
 use rand::SeedableRng;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap, VecDeque};
@@ -44,6 +45,8 @@ struct Fake {
     polls: u32,
     reports: Vec<(Uuid, LogbookReport)>,
     report_responses: VecDeque<Response>,
+    azimuths: Vec<(Uuid, BoardAzimuth)>,
+    azimuth_responses: VecDeque<Response>,
     /// Numbers of the stored batches, in order; 0 for a report.
     order: Vec<u64>,
 }
@@ -107,6 +110,20 @@ async fn put_report(
         return response;
     }
     Json(json!({ "revision": revision, "withdrawn": false })).into_response()
+}
+
+async fn put_azimuth(
+    State(fake): State<Shared>,
+    Path(id): Path<Uuid>,
+    Json(azimuth): Json<BoardAzimuth>,
+) -> Response {
+    let mut fake = fake.lock().unwrap();
+    let withdrawn = azimuth.withdrawn;
+    fake.azimuths.push((id, azimuth));
+    if let Some(response) = fake.azimuth_responses.pop_front() {
+        return response;
+    }
+    Json(json!({ "withdrawn": withdrawn })).into_response()
 }
 
 async fn get_downlink(
@@ -196,6 +213,7 @@ async fn rig_with(
         .route("/api/v1/streams/{stream}/downlink", get(get_downlink))
         .route("/api/v1/streams", post(open_stream))
         .route("/api/v1/agents/logbook/{id}", put(put_report))
+        .route("/api/v1/agents/azimuths/{id}", put(put_azimuth))
         .with_state(fake.clone());
     let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
     let server = format!("http://{}", listener.local_addr().unwrap());
@@ -236,7 +254,7 @@ async fn rig_with(
         },
         keeps_connection: plan.keeps_connection(),
         exchange_open: false,
-        reports_paused_until: None,
+        report_pauses: ReportPauses::default(),
         sealed: sealed.clone(),
         urgent: urgent.clone(),
         rng: StdRng::seed_from_u64(1),

@@ -14,7 +14,7 @@ mod time_outliers;
 
 pub use crate::gyro_speed_error::gyro_speed_error_deg;
 pub use crate::observation::Observation;
-pub use csv_row::{CsvRow, CsvRowError, check_columns, readings_from_csv};
+pub use csv_row::{CsvRow, CsvRowError, Motion, check_columns, readings_from_csv};
 pub use ols::fit_ols;
 pub use paper::fit_paper;
 pub use reference::{HeadingReading, ObservedReadings, observe_readings};

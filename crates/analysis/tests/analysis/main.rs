@@ -6,13 +6,13 @@ mod logbook;
 mod references;
 
 use binnacle_analysis::analyse::analyse;
-use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::logbook::{Cargo, LogbookEntry, LogbookKind};
 use binnacle_compass::model::Parameters;
 use binnacle_compass::position::Position;
 use binnacle_compass::result::{Analysis, FitError, SampleReason};
-use binnacle_compass::sample::Sample;
+use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_compass::settings::AnalysisSettings;
 use binnacle_compass::time::Timestamp;
 
@@ -71,6 +71,32 @@ fn order_and_repetition_leave_no_trace() {
     shuffled.rotate_left(333);
     shuffled.extend_from_slice(&samples[100..400]);
     assert_eq!(serde_json::to_string(&run(&shuffled)).unwrap(), expected);
+}
+
+#[test]
+fn samples_that_differ_beside_the_headings_alone_have_an_order() {
+    let samples = voyage();
+    let changes: [fn(&mut Sample); 6] = [
+        |s| s.cog = CourseOverGround::new(91.0),
+        |s| s.roll_deg = Some(1.0),
+        |s| s.roll_spread_deg = Some(1.0),
+        |s| s.temperature_c = Some(1.0),
+        |s| s.gyro_source = Some(SourceId::new(1)),
+        |s| s.satellite_source = Some(SourceId::new(1)),
+    ];
+    let twins = changes.map(|change| {
+        let mut twin = samples[100];
+        change(&mut twin);
+        twin
+    });
+    let before = [&twins[..], &samples].concat();
+    let mut backwards = twins;
+    backwards.reverse();
+    let after = [&samples, &backwards[..]].concat();
+    let found = run(&before);
+    assert_eq!(found.samples.len(), samples.len() + twins.len());
+    let text = |analysis: &Analysis| serde_json::to_string(analysis).unwrap();
+    assert_eq!(text(&found), text(&run(&after)));
 }
 
 #[test]

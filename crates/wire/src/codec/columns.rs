@@ -6,9 +6,12 @@
 
 use super::error::{DecodeError, EncodeError};
 use super::step::{Decimal, Step};
-use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading, wrap_180};
 use binnacle_compass::position::Position;
-use binnacle_compass::sample::Sample;
+use binnacle_compass::sample::{
+    RATE_OF_TURN_RANGE_DEG_MIN, ROLL_RANGE_DEG, ROLL_SPREAD_RANGE_DEG, Sample, SourceId,
+    TEMPERATURE_RANGE_C,
+};
 use binnacle_compass::time::Timestamp;
 use std::ops::RangeInclusive;
 
@@ -23,9 +26,15 @@ const SOG: u64 = 7;
 const RATE_OF_TURN: u64 = 8;
 const SPREAD: u64 = 9;
 const WINDOWS: u64 = 10;
+const COURSE: u64 = 11;
+const ROLL: u64 = 12;
+const ROLL_SPREAD: u64 = 13;
+const TEMPERATURE: u64 = 14;
+const GYRO_SOURCE: u64 = 15;
+const SATELLITE_SOURCE: u64 = 16;
 
 /// The last id that this version knows.
-pub(super) const LAST_KNOWN: u64 = WINDOWS;
+pub(super) const LAST_KNOWN: u64 = SATELLITE_SOURCE;
 
 /// Columns that every sample has: time, latitude, longitude, compass, windows.
 pub(super) const REQUIRED: usize = 5;
@@ -41,13 +50,19 @@ const SOG_STEP: Step = Step::new(2, 1);
 const RATE_OF_TURN_STEP: Step = Step::new(5, 1);
 const SPREAD_STEP: Step = Step::new(2, 2);
 const WINDOWS_STEP: Step = Step::new(1, 0);
+/// Well below what currents and wind change from sample to sample.
+const COURSE_STEP: Step = Step::new(1, 0);
+const ROLL_STEP: Step = Step::new(2, 1);
+const ROLL_SPREAD_STEP: Step = Step::new(5, 1);
+const TEMPERATURE_STEP: Step = Step::new(1, 0);
+const SOURCE_STEP: Step = Step::new(1, 0);
 
 /// Seconds since 1970 at 1980-01-06, when GPS time begins, and at 2100-01-01.
 const TIME_RANGE_S: RangeInclusive<f64> = 315_964_800.0..=4_102_444_800.0;
 const SOG_RANGE_KN: RangeInclusive<f64> = 0.0..=200.0;
-const RATE_OF_TURN_RANGE: RangeInclusive<f64> = -3600.0..=3600.0;
 const SPREAD_RANGE_DEG: RangeInclusive<f64> = 0.0..=180.0;
 const WINDOWS_RANGE: RangeInclusive<f64> = 1.0..=65_535.0;
+const SOURCE_RANGE: RangeInclusive<f64> = 0.0..=65_535.0;
 
 /// One quantity of all samples.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,10 +87,17 @@ pub fn check(sample: &Sample, row: usize) -> Result<(), EncodeError> {
         (
             "rate_of_turn_deg_min",
             sample.rate_of_turn_deg_min,
-            RATE_OF_TURN_RANGE,
+            RATE_OF_TURN_RANGE_DEG_MIN,
         ),
         ("spread_deg", sample.spread_deg, SPREAD_RANGE_DEG),
         ("windows", Some(f64::from(sample.windows)), WINDOWS_RANGE),
+        ("roll_deg", sample.roll_deg, ROLL_RANGE_DEG),
+        (
+            "roll_spread_deg",
+            sample.roll_spread_deg,
+            ROLL_SPREAD_RANGE_DEG,
+        ),
+        ("temperature_c", sample.temperature_c, TEMPERATURE_RANGE_C),
     ];
     for (field, value, range) in fields {
         let Some(value) = value else { continue };
@@ -119,9 +141,25 @@ pub(super) fn from_samples(samples: &[Sample]) -> Vec<Column> {
         column(WINDOWS, WINDOWS_STEP, samples, |s| {
             Some(f64::from(s.windows))
         }),
+        direction(COURSE, COURSE_STEP, samples, course_less_reference),
+        column(ROLL, ROLL_STEP, samples, |s| s.roll_deg),
+        column(ROLL_SPREAD, ROLL_SPREAD_STEP, samples, |s| {
+            s.roll_spread_deg
+        }),
+        column(TEMPERATURE, TEMPERATURE_STEP, samples, |s| s.temperature_c),
+        column(GYRO_SOURCE, SOURCE_STEP, samples, |s| {
+            s.gyro_source.map(number)
+        }),
+        column(SATELLITE_SOURCE, SOURCE_STEP, samples, |s| {
+            s.satellite_source.map(number)
+        }),
     ];
     columns.retain(|column| column.values.iter().any(Option::is_some));
     columns
+}
+
+fn number(source: SourceId) -> f64 {
+    f64::from(source.number())
 }
 
 fn column(
@@ -176,21 +214,29 @@ fn satellite_less_gyro(sample: &Sample) -> Option<f64> {
     Some(wrap_180(satellite - gyro_base(sample).value()))
 }
 
-/// Compass less gyro, or without one, less satellite compass.
-fn compass_less_reference(sample: &Sample) -> f64 {
-    let base = match sample.satellite {
+/// The gyro heading, or without one, that of the satellite compass, as it will be decoded.
+fn reference_base(sample: &Sample) -> Decimal {
+    match sample.satellite {
         Some(satellite) if sample.gyro.is_none() => {
             REFERENCE_STEP.exact(REFERENCE_STEP.count(satellite.degrees()))
         }
         _ => gyro_base(sample),
-    };
-    wrap_180(sample.compass.degrees() - base.value())
+    }
+}
+
+fn compass_less_reference(sample: &Sample) -> f64 {
+    wrap_180(sample.compass.degrees() - reference_base(sample).value())
+}
+
+fn course_less_reference(sample: &Sample) -> Option<f64> {
+    let course = sample.cog?.degrees();
+    Some(wrap_180(course - reference_base(sample).value()))
 }
 
 /// Returns the samples of `count` rows; every column has that many values.
 pub(super) fn to_samples(columns: &[Column], count: usize) -> Result<Vec<Sample>, DecodeError> {
     for column in columns {
-        let turns = matches!(column.id, LON | GYRO | SATELLITE | COMPASS);
+        let turns = matches!(column.id, LON | GYRO | SATELLITE | COMPASS | COURSE);
         if turns && column.step.circle().is_none() {
             return Err(DecodeError::BadStep(column.id));
         }
@@ -251,6 +297,11 @@ impl Row<'_> {
             .map(|v| self.within(id, v, range))
             .transpose()
     }
+
+    fn source(&self, id: u64) -> Result<Option<SourceId>, DecodeError> {
+        let number = self.optional_within(id, &SOURCE_RANGE)?;
+        Ok(number.map(|number| SourceId::new(number as u16)))
+    }
 }
 
 fn to_sample(row: &Row<'_>) -> Result<Sample, DecodeError> {
@@ -265,6 +316,9 @@ fn to_sample(row: &Row<'_>) -> Result<Sample, DecodeError> {
     let reference = gyro.or(satellite).unwrap_or(Decimal::ZERO);
     let compass = row.required(COMPASS)?.plus(reference).wrapped_360();
     let windows = row.within(WINDOWS, row.required(WINDOWS)?, &WINDOWS_RANGE)?;
+    let course = row
+        .optional(COURSE)
+        .map(|c| c.plus(reference).wrapped_360());
     let time = i64::try_from(time.micros())
         .ok()
         .and_then(|micros| Timestamp::from_micros(micros).ok())
@@ -274,9 +328,15 @@ fn to_sample(row: &Row<'_>) -> Result<Sample, DecodeError> {
         gyro: gyro.and_then(|g| TrueHeading::new(g.value())),
         satellite: satellite.and_then(|s| TrueHeading::new(s.value())),
         sog_kn: row.optional_within(SOG, &SOG_RANGE_KN)?,
-        rate_of_turn_deg_min: row.optional_within(RATE_OF_TURN, &RATE_OF_TURN_RANGE)?,
+        rate_of_turn_deg_min: row.optional_within(RATE_OF_TURN, &RATE_OF_TURN_RANGE_DEG_MIN)?,
         spread_deg: row.optional_within(SPREAD, &SPREAD_RANGE_DEG)?,
         windows: windows as u16,
+        cog: course.and_then(|c| CourseOverGround::new(c.value())),
+        roll_deg: row.optional_within(ROLL, &ROLL_RANGE_DEG)?,
+        roll_spread_deg: row.optional_within(ROLL_SPREAD, &ROLL_SPREAD_RANGE_DEG)?,
+        temperature_c: row.optional_within(TEMPERATURE, &TEMPERATURE_RANGE_C)?,
+        gyro_source: row.source(GYRO_SOURCE)?,
+        satellite_source: row.source(SATELLITE_SOURCE)?,
         ..Sample::new(time, position, compass)
     })
 }

@@ -108,6 +108,15 @@ fn a_missing_value_stays_missing() {
             (decoded.rate_of_turn_deg_min, decoded.satellite),
             (None, None)
         );
+        assert_eq!((decoded.cog, decoded.roll_deg), (None, None));
+        assert_eq!(
+            (decoded.roll_spread_deg, decoded.temperature_c),
+            (None, None)
+        );
+        assert_eq!(
+            (decoded.gyro_source, decoded.satellite_source),
+            (None, None)
+        );
     }
 }
 
@@ -123,7 +132,7 @@ fn samples_come_out_in_order_of_time() {
 #[test]
 fn a_value_out_of_range_is_refused_by_name() {
     type Spoil = fn(&mut Sample);
-    let spoilt: [(&str, Spoil); 6] = [
+    let spoilt: [(&str, Spoil); 9] = [
         ("time", |s| {
             s.time = Timestamp::parse("1850-01-01T00:00:00Z").unwrap();
         }),
@@ -134,6 +143,9 @@ fn a_value_out_of_range_is_refused_by_name() {
         }),
         ("spread_deg", |s| s.spread_deg = Some(-0.1)),
         ("windows", |s| s.windows = 0),
+        ("roll_deg", |s| s.roll_deg = Some(-90.1)),
+        ("roll_spread_deg", |s| s.roll_spread_deg = Some(f64::NAN)),
+        ("temperature_c", |s| s.temperature_c = Some(101.0)),
     ];
     for (name, spoil) in spoilt {
         let mut bad = sample("2026-11-21T07:00:00Z", 1.0, Some(1.0), None);

@@ -4,9 +4,9 @@
 // Each program that includes this uses a part of it.
 #![allow(dead_code)]
 
-use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
 use binnacle_compass::position::Position;
-use binnacle_compass::sample::Sample;
+use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::{Batch, StreamId};
@@ -83,6 +83,26 @@ pub(crate) fn voyage(seed: u64, count: usize) -> Vec<Sample> {
             windows,
             ..Sample::new(middle, position.expect("at sea"), compass.expect("finite"))
         });
+    }
+    samples
+}
+
+/// Returns a [`voyage`] with the drift of a current and of the wind, the roll of a ship in
+/// changing weather, a list, and the day's temperatures.
+pub(crate) fn voyage_with_motion(seed: u64, count: usize) -> Vec<Sample> {
+    let mut dice = Dice(seed.wrapping_mul(7_919) + 1);
+    let (mut drift_deg, mut roll_spread_deg, mut air_c) = (0.0, 2.0, 15.0);
+    let mut samples = voyage(seed, count);
+    for sample in &mut samples {
+        drift_deg += -0.05 * drift_deg + 0.35 * dice.normal();
+        roll_spread_deg += 0.03 * (2.0 - roll_spread_deg) + 0.15 * dice.normal();
+        air_c += 0.01 * (15.0 - air_c) + 0.1 * dice.normal();
+        let gyro = sample.gyro.expect("every sample has one").degrees();
+        sample.cog = CourseOverGround::new(gyro + drift_deg + 0.4 * dice.normal());
+        sample.roll_deg = Some(0.4 + 0.15 * drift_deg + 0.1 * dice.normal());
+        sample.roll_spread_deg = Some((roll_spread_deg + 0.2 * dice.normal()).abs());
+        sample.temperature_c = Some(air_c);
+        sample.gyro_source = Some(SourceId::from_name("bridge HE THS"));
     }
     samples
 }

@@ -3,12 +3,23 @@
 use super::alert::Alert;
 use super::change::{AlertChange, ChangeKind};
 use binnacle_platform::ids::OperatorId;
-use binnacle_platform::mail::{Announcement, Letter, Phase, header, one_line, wrapped};
-use binnacle_platform::notices::{self, Notice, NoticesPublished};
+use binnacle_platform::mail::{Announcement, Letter, Phase, TopicList, header, one_line, wrapped};
+use binnacle_platform::notices::{DeclaredKind, DefaultMail, Notice, NoticesPublished, Readers};
 use binnacle_platform::outbox::Message;
 use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
 use serde_json::json;
+
+/// An alert of severity warning or worse is raised, becomes critical, sinks to a notice, or is
+/// over. Critical alerts are sent at once.
+pub const NOTICE_KIND: DeclaredKind =
+    DeclaredKind::new("alert", Readers::Operators, DefaultMail::Recipients);
+
+/// List of those who get mail about alerts.
+pub const TOPIC_LIST: TopicList = TopicList {
+    subject: "alerts",
+    promise: "alerts of your fleet's compasses reach this address",
+};
 
 /// Returns the message for webhooks.
 pub(super) fn message(change: &AlertChange, now: Time) -> Message {
@@ -19,7 +30,7 @@ pub(super) fn message(change: &AlertChange, now: Time) -> Message {
     Message {
         id: *id,
         kind,
-        order: None,
+        about: None,
         body: json!({ "id": id, "kind": kind, "at": now, "alert": alert }).to_string(),
     }
 }
@@ -84,14 +95,13 @@ fn notice(change: &AlertChange) -> Option<Notice> {
     };
     let (subject, text) = words_of(change);
     is_announced.then(|| Notice {
-        kind: notices::Kind::Alert,
+        kind: NOTICE_KIND,
         urgent: critical && change.kind != ChangeKind::Cleared,
         subject,
         text,
         path: format!("/vessels/{}", alert.vessel_id),
         vessel: alert.vessel_id,
-        order: None,
-        alert: Some(alert.id),
+        about: Some(alert.id.0),
     })
 }
 

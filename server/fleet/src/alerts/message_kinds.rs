@@ -12,6 +12,9 @@ pub const ACKNOWLEDGED: Kind = Kind::new("alert.acknowledged");
 /// An alert is over.
 pub const CLEARED: Kind = Kind::new("alert.cleared");
 
+/// Kinds of a program that follows alerts from their beginning to their end.
+pub const EXAMPLE: [Kind; 2] = [RAISED, CLEARED];
+
 /// All kinds, in the order in which the API lists them.
 pub const ALL: [DeclaredKind; 4] = [
     DeclaredKind::new(RAISED, Audience::Operators),

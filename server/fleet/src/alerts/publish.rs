@@ -5,6 +5,7 @@
 use super::announcement::{announcement, message, notices};
 use super::change::{AlertChange, PendingChange};
 use super::store;
+use crate::event_kinds;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
 use binnacle_platform::events::{self, Event};
@@ -38,7 +39,7 @@ pub(super) async fn publish_changes(
             was: *was,
         });
     }
-    let event = events::insert(tx, vessel, events::Kind::Alert, now).await?;
+    let event = events::insert(tx, vessel, event_kinds::ALERT, now).await?;
     let operator = event.operator_id;
     let messages: Vec<Message> = changes.iter().map(|one| message(one, now)).collect();
     webhooks::announce(tx, operator.into(), &messages, now).await?;

@@ -119,6 +119,9 @@ fn update(hash: &mut Sha256, value: &impl Serialize) -> anyhow::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use binnacle_compass::angle::CourseOverGround;
+    use binnacle_compass::sample::SourceId;
+    use std::collections::BTreeSet;
 
     fn sample(second: u32, compass_deg: f64) -> Sample {
         serde_json::from_value(serde_json::json!({
@@ -138,6 +141,28 @@ mod tests {
             settings,
         })
         .unwrap()
+    }
+
+    #[test]
+    fn each_value_counts_in_the_hash_and_an_absent_one_does_not() {
+        let bare = sample(0, 91.0);
+        let with = |change: fn(&mut Sample)| {
+            let mut changed = bare;
+            change(&mut changed);
+            hash(vec![changed])
+        };
+        let hashes = [
+            with(|_| {}),
+            with(|s| s.cog = CourseOverGround::new(91.0)),
+            with(|s| s.roll_deg = Some(1.0)),
+            with(|s| s.roll_spread_deg = Some(1.0)),
+            with(|s| s.temperature_c = Some(1.0)),
+            with(|s| s.gyro_source = Some(SourceId::new(1))),
+            with(|s| s.satellite_source = Some(SourceId::new(1))),
+        ];
+        let distinct: BTreeSet<&String> = hashes.iter().collect();
+        assert_eq!(distinct.len(), hashes.len());
+        assert!(!serde_json::to_string(&bare).unwrap().contains("roll"));
     }
 
     #[test]

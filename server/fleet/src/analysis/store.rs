@@ -3,13 +3,14 @@
 use super::disturbances::store_disturbances;
 use super::findings::Findings;
 use super::track::track;
+use crate::event_kinds;
 use crate::models::{self, ModelJson, StoredModel};
 use binnacle_compass::coverage::Coverage;
 use binnacle_compass::result::{Analysis, Epoch, ReferenceCheck, SailNext, SampleDiagnostic};
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::db::{Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::events::{self, Event, Kind};
+use binnacle_platform::events::{self, Event};
 use binnacle_platform::ids::{CompassId, ModelId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_wire::messages::CardWithdrawn;
@@ -228,11 +229,11 @@ pub async fn save(tx: &mut Tx, found: &AnalysisResult, now: Time) -> Result<Opti
         if withdrawn == withdrawn_before {
             return Ok(None);
         }
-        let event = events::insert(tx, found.vessel_id, Kind::Model, now).await?;
+        let event = events::insert(tx, found.vessel_id, event_kinds::MODEL, now).await?;
         return Ok(Some(event));
     };
     models::insert(tx, &model).await?;
-    let event = events::insert(tx, found.vessel_id, Kind::Model, now).await?;
+    let event = events::insert(tx, found.vessel_id, event_kinds::MODEL, now).await?;
     Ok(Some(event))
 }
 

@@ -4,7 +4,7 @@ use super::entry::Entry;
 use binnacle_platform::error::{Error, Result};
 
 /// Named as in JSON.
-const COLUMNS: [&str; 20] = [
+const COLUMNS: [&str; 25] = [
     "time",
     "occasion",
     "lat",
@@ -25,6 +25,11 @@ const COLUMNS: [&str; 20] = [
     "spread_deg",
     "reason",
     "observer",
+    "compass_error_deg",
+    "gyro_error_deg",
+    "initials",
+    "remark",
+    "azimuth_id",
 ];
 
 /// Returns the line of column names.

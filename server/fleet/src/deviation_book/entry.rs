@@ -1,22 +1,25 @@
 //! Entry of a deviation book: an observed deviation, beside the card's.
 
+use super::cards::{CardReading, Cards};
 use super::select::{Occasion, select_entries};
-use crate::adjustments::CompletedOrder;
+use crate::azimuths::StoredAzimuth;
 use crate::card;
-use crate::models::StoredModel;
-use binnacle_compass::angle::{TrueHeading, wrap_180};
-use binnacle_compass::deviation::Prediction;
+use binnacle_compass::angle::{GyroError, GyroHeading, TrueHeading, wrap_180};
+use binnacle_compass::azimuth::AzimuthKind;
+use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::result::{SampleDiagnostic, SampleReason};
 use binnacle_compass::ship::EarthField;
+use binnacle_platform::ids::AzimuthId;
 use binnacle_platform::time::Time;
 use serde::Serialize;
 use utoipa::ToSchema;
+use uuid::Uuid;
 
-/// A compass error that was observed under way.
+/// A compass error that was observed.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[schema(as = DeviationBookEntry)]
 pub(super) struct Entry {
-    /// The middle of the stretch.
+    /// The middle of the stretch; for an azimuth, its moment.
     pub(super) time: Time,
     /// Occasion of the entry.
     pub(super) occasion: Occasion,
@@ -73,6 +76,28 @@ pub(super) struct Entry {
     pub(super) reason: Option<SampleReason>,
     /// Its observer.
     pub(super) observer: Observer,
+    /// Compass error: deviation plus variation, degrees, east positive.
+    #[schema(example = 2.7)]
+    pub(super) compass_error_deg: f64,
+    /// Gyro error by an azimuth: true less gyro, degrees, east positive.
+    #[schema(required, example = 0.2)]
+    pub(super) gyro_error_deg: Option<f64>,
+    /// Initials of the officer who observed an azimuth.
+    #[schema(required, example = "LW")]
+    pub(super) initials: Option<String>,
+    /// Remark of that officer.
+    #[schema(required)]
+    pub(super) remark: Option<String>,
+    /// The azimuth.
+    #[schema(required)]
+    pub(super) azimuth_id: Option<AzimuthId>,
+}
+
+/// Place of an entry in the book: its time, and then the azimuth, which a sample has none of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct EntryKey {
+    pub(super) time: Time,
+    pub(super) azimuth: Uuid,
 }
 
 /// Reference of a true heading.
@@ -86,6 +111,16 @@ pub(super) enum Reference {
     Satellite,
     /// Both.
     GyroAndSatellite,
+    /// The sun's true azimuth.
+    SunAzimuth,
+    /// The sun's amplitude at the horizon.
+    SunAmplitude,
+    /// Another body.
+    Body,
+    /// A transit of charted marks.
+    Transit,
+    /// A charted quay.
+    Quay,
 }
 
 /// Observer of a compass error.
@@ -95,59 +130,20 @@ pub(super) enum Reference {
 pub(super) enum Observer {
     /// The agent on board, by itself.
     Automatic,
+    /// An officer, by an azimuth.
+    Officer,
 }
 
-/// Times at which cards ended before another model replaced them.
-#[derive(Clone, Debug, Default)]
-pub(super) struct CardEnds {
-    /// Work on compass or ship that the logbook reports.
-    pub(super) work: Vec<Time>,
-    /// Time from which there is no card at all.
-    pub(super) withdrawn: Option<Time>,
-}
-
-/// Makes the entries of samples, with the cards of `models` in order of version, and their
-/// verification at that time.
-pub(super) fn entries(
-    samples: Vec<SampleDiagnostic>,
-    models: &[StoredModel],
-    ends: &CardEnds,
-    completed: &[CompletedOrder],
-) -> Vec<Entry> {
+/// Makes the entries of samples.
+pub(super) fn of_samples(samples: Vec<SampleDiagnostic>, cards: Cards<'_>) -> Vec<Entry> {
     let chosen = select_entries(samples).into_iter();
     chosen
-        .filter_map(|(occasion, sample)| {
-            let at = Time(sample.sample.time);
-            let last = models.iter().rev().find(|model| model.created_at <= at);
-            entry(
-                occasion,
-                &sample,
-                last.filter(|model| ends.leaves_valid(model, at)),
-                completed,
-            )
-        })
+        .filter_map(|(occasion, sample)| of_sample(occasion, &sample, cards))
         .collect()
 }
 
-impl CardEnds {
-    /// Tells whether a model's card was still valid at a time.
-    fn leaves_valid(&self, model: &StoredModel, at: Time) -> bool {
-        let mut work = self.work.iter();
-        let worked = work.any(|begun| {
-            // The adjustment that a model was predicted for does not end its card.
-            model.epoch_from != Some(*begun) && (model.data_until..=at).contains(begun)
-        });
-        !worked && self.withdrawn.is_none_or(|since| at < since)
-    }
-}
-
 /// Returns `None` for a sample without a deviation.
-fn entry(
-    occasion: Occasion,
-    found: &SampleDiagnostic,
-    model: Option<&StoredModel>,
-    completed: &[CompletedOrder],
-) -> Option<Entry> {
+fn of_sample(occasion: Occasion, found: &SampleDiagnostic, cards: Cards<'_>) -> Option<Entry> {
     let sample = &found.sample;
     let (deviation_deg, variation_deg) = found.deviation_deg.zip(found.variation_deg)?;
     let reference = match (sample.gyro, sample.satellite) {
@@ -155,48 +151,111 @@ fn entry(
         (Some(_), None) => Reference::Gyro,
         (None, _) => Reference::Satellite,
     };
-    let card = model.and_then(|model| Some((model, predicted(found, model)?)));
-    let card_deviation_deg = card.map(|(_, card)| card.deviation.degrees_east());
+    let time = Time(sample.time);
+    let earth = found.h_nt.zip(found.z_nt);
+    let earth = earth.map(|(h_nt, z_nt)| EarthField { h_nt, z_nt });
+    let card = earth.and_then(|earth| cards.read(time, sample.compass, earth));
     let compass_deg = sample.compass.degrees();
-    Some(Entry {
-        time: Time(sample.time),
+    let compass_error_deg = wrap_180(deviation_deg + variation_deg);
+    let observed = Entry {
+        time,
         occasion,
         lat: sample.position.lat_deg(),
         lon: sample.position.lon_deg(),
         compass_deg,
         reference,
-        true_deg: (compass_deg + deviation_deg + variation_deg).rem_euclid(360.0),
+        true_deg: (compass_deg + compass_error_deg).rem_euclid(360.0),
         gyro_deg: sample.gyro.map(TrueHeading::degrees),
         satellite_deg: sample.satellite.map(TrueHeading::degrees),
         variation_deg,
         deviation_deg,
-        model_version: card.map(|(model, _)| model.version),
-        card_status: card.map(|(model, _)| status(model, completed, Time(sample.time))),
-        card_deviation_deg,
-        card_band95_deg: card.and_then(|(_, card)| card.band95_deg),
-        difference_deg: card_deviation_deg.map(|card_deg| wrap_180(deviation_deg - card_deg)),
+        model_version: None,
+        card_status: None,
+        card_deviation_deg: None,
+        card_band95_deg: None,
+        difference_deg: None,
         windows: sample.windows,
         spread_deg: sample.spread_deg,
         reason: found.reason,
         observer: Observer::Automatic,
-    })
+        compass_error_deg,
+        gyro_error_deg: None,
+        initials: None,
+        remark: None,
+        azimuth_id: None,
+    };
+    Some(observed.beside(card))
 }
 
-/// Returns the status of a model's card at a time.
-fn status(model: &StoredModel, completed: &[CompletedOrder], at: Time) -> card::CardStatus {
-    let mut bearing = completed.iter().filter(|order| order.is_source_of(model));
-    let was_verified =
-        bearing.any(|order| order.at_sea.is_some_and(|at_sea| at_sea.verified_at <= at));
-    if was_verified {
-        card::CardStatus::Verified
-    } else {
-        card::CardStatus::Predicted
+/// Makes the entry of an azimuth.
+pub(super) fn of_azimuth(stored: &StoredAzimuth, cards: Cards<'_>) -> Entry {
+    let (azimuth, result) = (&stored.azimuth, stored.azimuth.result());
+    let (time, position) = (azimuth.time(), azimuth.position());
+    let heading = azimuth.compass_heading();
+    let earth = field(FieldModel::Igrf14, position, 0.0, time).ok();
+    let card = earth.and_then(|earth| cards.read(Time(time), heading, earth.for_ship()));
+    let observed = Entry {
+        time: Time(time),
+        occasion: Occasion::Azimuth,
+        lat: position.lat_deg(),
+        lon: position.lon_deg(),
+        compass_deg: heading.degrees(),
+        reference: Reference::from(azimuth.kind()),
+        true_deg: result.true_heading_deg.degrees(),
+        gyro_deg: azimuth.gyro_heading().map(GyroHeading::degrees),
+        satellite_deg: None,
+        variation_deg: result.variation_deg.degrees_east(),
+        deviation_deg: result.deviation_deg.degrees_east(),
+        model_version: None,
+        card_status: None,
+        card_deviation_deg: None,
+        card_band95_deg: None,
+        difference_deg: None,
+        windows: 0,
+        spread_deg: None,
+        reason: None,
+        observer: Observer::Officer,
+        compass_error_deg: result.compass_error_deg.degrees_east(),
+        gyro_error_deg: result.gyro_error_deg.map(GyroError::degrees_east),
+        initials: Some(stored.observer.clone()),
+        remark: Some(stored.remark.clone()).filter(|remark| !remark.is_empty()),
+        azimuth_id: Some(stored.id),
+    };
+    observed.beside(card)
+}
+
+impl Entry {
+    /// Returns the entry beside the reading of a card.
+    fn beside(self, card: Option<CardReading>) -> Entry {
+        let Some(card) = card else { return self };
+        let card_deg = card.prediction.deviation.degrees_east();
+        Entry {
+            model_version: Some(card.model_version),
+            card_status: Some(card.status),
+            card_deviation_deg: Some(card_deg),
+            card_band95_deg: card.prediction.band95_deg,
+            difference_deg: Some(wrap_180(self.deviation_deg - card_deg)),
+            ..self
+        }
+    }
+
+    /// Returns the entry's place in the book. No two entries have the same.
+    pub(super) fn key(&self) -> EntryKey {
+        EntryKey {
+            time: self.time,
+            azimuth: self.azimuth_id.map_or(Uuid::nil(), |id| id.0),
+        }
     }
 }
 
-/// Returns the deviation on the model's card for the heading, at the vessel's place.
-fn predicted(found: &SampleDiagnostic, model: &StoredModel) -> Option<Prediction> {
-    let (h_nt, z_nt) = found.h_nt.zip(found.z_nt)?;
-    let earth = EarthField { h_nt, z_nt };
-    model.model.0.deviation(found.sample.compass, earth).ok()
+impl From<AzimuthKind> for Reference {
+    fn from(kind: AzimuthKind) -> Reference {
+        match kind {
+            AzimuthKind::SunAzimuth => Reference::SunAzimuth,
+            AzimuthKind::SunAmplitude => Reference::SunAmplitude,
+            AzimuthKind::Body => Reference::Body,
+            AzimuthKind::Transit => Reference::Transit,
+            AzimuthKind::Quay => Reference::Quay,
+        }
+    }
 }

@@ -18,18 +18,27 @@ const GREY: u8 = 90;
 /// Entries on a sheet.
 const ROWS: usize = 33;
 
+/// Column of the observed deviation, in bold.
+const DEVIATION: usize = 7;
+/// Column of the observer.
+const OBSERVER: usize = 10;
+/// Column of the remarks.
+const REMARKS: usize = 11;
+
 /// Columns: two lines of title, where the text is anchored, and whether it ends there.
-const COLUMNS: [([&str; 2], f32, bool); 10] = [
+const COLUMNS: [([&str; 2], f32, bool); 12] = [
     (["", "UTC"], LEFT, false),
-    (["", "Position"], 112.0, false),
-    (["Compass", "heading"], 292.0, true),
-    (["True", "heading"], 338.0, true),
-    (["", "by"], 346.0, false),
-    (["", "Variation"], 456.0, true),
-    (["Deviation", "observed"], 510.0, true),
-    (["by the card", "(95 % band)"], 590.0, true),
-    (["Observed", "less card"], 640.0, true),
-    (["", "Remarks"], 650.0, false),
+    (["", "Position"], 110.0, false),
+    (["Compass", "heading"], 250.0, true),
+    (["True", "heading"], 290.0, true),
+    (["", "by"], 297.0, false),
+    (["Compass", "error"], 392.0, true),
+    (["", "Variation"], 438.0, true),
+    (["Deviation", "observed"], 488.0, true),
+    (["by the card", "(95 % band)"], 564.0, true),
+    (["Observed", "less card"], 606.0, true),
+    (["", "Observer"], 613.0, false),
+    (["", "Remarks"], 662.0, false),
 ];
 
 /// Vessel and period of the book.
@@ -108,20 +117,26 @@ fn row(sheet: &mut Sheet, entry: &Entry, y: f32, line: usize) {
         heading_to_a_tenth(entry.compass_deg),
         heading_to_a_tenth(entry.true_deg),
         by(entry.reference).to_owned(),
+        east_west(entry.compass_error_deg),
         east_west(entry.variation_deg),
         east_west(entry.deviation_deg),
         by_the_card(entry),
         entry.difference_deg.map_or("–".to_owned(), signed),
+        entry.initials.clone().unwrap_or_else(|| "agent".to_owned()),
         remarks(entry),
     ];
     for (column, ((_, x, ends), text)) in COLUMNS.into_iter().zip(cells).enumerate() {
-        let style = if column == 6 {
+        let style = if column == DEVIATION {
             Style::bold(8.0)
         } else {
             Style::plain(8.0)
         };
         let style = if ends { style.end() } else { style };
-        let room = if x > 600.0 && !ends { RIGHT - x } else { WIDTH };
+        let room = match column {
+            OBSERVER => COLUMNS[REMARKS].1 - x - 3.0,
+            REMARKS => RIGHT - x,
+            _ => WIDTH,
+        };
         let text = cut(&text, style.face, style.size, room);
         sheet.text((x, y), style, text);
     }
@@ -139,6 +154,11 @@ fn by(reference: Reference) -> &'static str {
         Reference::Gyro => "gyro",
         Reference::Satellite => "satellite",
         Reference::GyroAndSatellite => "gyro, satellite",
+        Reference::SunAzimuth => "sun",
+        Reference::SunAmplitude => "sun, amplitude",
+        Reference::Body => "body",
+        Reference::Transit => "transit",
+        Reference::Quay => "quay",
     }
 }
 
@@ -154,15 +174,19 @@ fn by_the_card(entry: &Entry) -> String {
 
 fn remarks(entry: &Entry) -> String {
     let occasion = match entry.occasion {
-        Occasion::Watch => "",
+        Occasion::Watch | Occasion::Azimuth => "",
         Occasion::Alteration => "course altered",
     };
+    let gyro = entry.gyro_error_deg.map_or(String::new(), |error_deg| {
+        format!("gyro error {}", east_west(error_deg))
+    });
     let card = match entry.card_status {
         Some(card::CardStatus::Verified) => "card verified",
         Some(card::CardStatus::Predicted) | None => "",
     };
     let reason = entry.reason.map_or("", reason_in_words);
-    let all = [occasion, reason, card].into_iter();
+    let remark = entry.remark.as_deref().unwrap_or_default();
+    let all = [occasion, &gyro, reason, card, remark].into_iter();
     let said = all.filter(|words| !words.is_empty());
     said.collect::<Vec<_>>().join("; ")
 }
@@ -189,8 +213,9 @@ const FOOT: f32 = 7.0;
 /// Returns the text at the foot, beside the master's line.
 fn foot_text() -> Vec<String> {
     let says = "Observed by the agent on board by itself, in settled stretches of heading: one in \
-                each watch that has one, and after alterations of course of 20° or more. A card is \
-                predicted where the remarks do not say that it was verified.";
+                each watch that has one, and after alterations of course of 20° or more; by the \
+                officer whose initials are given, by an azimuth. A card is predicted where the \
+                remarks do not say that it was verified.";
     wrap(says, Face::Regular, FOOT, MASTER - 14.0 - LEFT)
 }
 

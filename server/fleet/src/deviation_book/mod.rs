@@ -2,10 +2,11 @@
 //!
 //! Invariants:
 //!
-//! - Every entry is an observation: one in each watch, and one after each large alteration of
-//!   course.
+//! - Every entry is an observation: one in each watch, one after each large alteration of course,
+//!   and every azimuth that is not withdrawn.
 //! - A card counts only for observations after it was made.
 
+mod cards;
 mod csv;
 mod entry;
 mod layout;
@@ -25,7 +26,7 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Params, file, file_name, time};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
-use entry::Entry;
+use entry::{Entry, EntryKey};
 use futures_util::{StreamExt, stream};
 use layout::Book;
 use reader::BookReader;
@@ -34,6 +35,7 @@ use tracing::error;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
+use uuid::Uuid;
 
 /// Entries of a printed book: some 150 sheets.
 const MOST_PRINTED: usize = 5_000;
@@ -79,7 +81,8 @@ struct BookPage {
 ///
 /// An entry for the first settled stretch of heading in each watch of four hours, and
 /// for the first after each alteration of course by 20° or more. Watches in which none
-/// was observed, as in port, have none. `card_status` says what the card of the time was
+/// was observed, as in port, have none. Each azimuth that an officer observed is an entry
+/// with the officer's initials. `card_status` says what the card of the time was
 /// worth then: `predicted`, or `verified` from when headings at sea had verified the
 /// adjustment that it comes from.
 #[utoipa::path(get, path = "/vessels/{id}/deviation-book", tag = "fleet",
@@ -94,13 +97,16 @@ async fn list_book(
     page: Page,
 ) -> Result<Json<BookPage>> {
     let (mut selection, _) = range.find(&app, reader, id).await?;
-    // No two entries have one time: it is the cursor.
-    if let Some(after) = page.after_number()? {
-        selection.begin_after(after)?;
-    }
+    let after = page.after_time()?;
+    let after = after.map(|(micros, azimuth)| entry_key(micros, azimuth));
+    let after = after.transpose()?;
+    selection.from = selection.from.max(after.map(|after| after.time));
     let mut source = selection.open(&app, id).await?;
-    let (found, _) = source.at_most(page.limit() + 1).await?;
-    let listed = page.cut(found, |entry| entry.time.0.micros().to_string());
+    let (found, _) = source.at_most(after, page.limit() + 1).await?;
+    let listed = page.cut(found, |entry| {
+        let key = entry.key();
+        format!("{}.{}", key.time.0.micros(), key.azimuth)
+    });
     Ok(Json(BookPage {
         items: listed.items,
         next: listed.next,
@@ -144,7 +150,7 @@ async fn book_pdf(
     let (entries, all) = selection
         .open(&app, id)
         .await?
-        .at_most(MOST_PRINTED)
+        .at_most(None, MOST_PRINTED)
         .await?;
     if !all {
         return Err(Error::Invalid {
@@ -204,14 +210,16 @@ impl Selection {
     async fn open(&self, app: &App, vessel: VesselId) -> Result<BookReader> {
         BookReader::open(&app.db, vessel, self.compass, self.from, self.to).await
     }
+}
 
-    /// Leaves out the entries up to the last one of the page before.
-    fn begin_after(&mut self, micros: i64) -> Result<()> {
-        let after = Timestamp::from_micros(micros.saturating_add(1))
-            .map_err(|_| Error::BadRequest(format!("after: {micros} is no time of an entry")))?;
-        self.from = self.from.max(Some(Time(after)));
-        Ok(())
-    }
+/// Returns the key that a cursor names.
+fn entry_key(micros: i64, azimuth: Uuid) -> Result<EntryKey> {
+    let time = Timestamp::from_micros(micros)
+        .map_err(|_| Error::BadRequest(format!("after: {micros} is no time of an entry")))?;
+    Ok(EntryKey {
+        time: Time(time),
+        azimuth,
+    })
 }
 
 impl Book {

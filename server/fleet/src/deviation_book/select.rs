@@ -2,7 +2,7 @@
 //! alteration of course.
 //!
 //! Invariants: the entries of a watch depend on that watch's samples alone, so that a book read in
-//! parts equals the book read whole. No two entries have the same time.
+//! parts equals the book read whole. No two of these entries have the same time.
 
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::result::SampleDiagnostic;
@@ -23,6 +23,8 @@ pub(super) enum Occasion {
     Watch,
     /// An alteration of course by 20° or more since the entry before.
     Alteration,
+    /// An azimuth that an officer observed.
+    Azimuth,
 }
 
 /// Selects entries from samples in order of time, which begin with a watch's first.

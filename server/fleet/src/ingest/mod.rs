@@ -14,10 +14,13 @@ mod downlink;
 mod short_burst;
 mod store;
 
-pub use short_burst::{ImportResult, IncompleteBatch, RefusedMessage, import_messages};
+pub use short_burst::{
+    Acknowledgement, ImportResult, IncompleteBatch, RefusedMessage, ShortBurst, import_messages,
+};
 
 use crate::agent_auth::Agent;
 use crate::enrolment;
+use crate::event_kinds;
 use crate::{alerts, analysis_queue};
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
@@ -155,7 +158,7 @@ async fn store_batch(
         if !batch.samples.is_empty() || !batch.alerts.is_empty() {
             analysis_queue::enqueue(tx, vessel, now, delay_s).await?;
         }
-        events_out.push(events::insert(tx, vessel, events::Kind::Batch, now).await?);
+        events_out.push(events::insert(tx, vessel, event_kinds::BATCH, now).await?);
     }
     Ok(Received { is_new, events_out })
 }

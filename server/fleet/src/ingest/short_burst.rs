@@ -30,7 +30,25 @@ pub struct ImportResult {
     pub refused: Vec<RefusedMessage>,
     /// Acknowledgements for the ship, by stream.
     #[serde(skip)]
-    pub acknowledgements: Vec<(Uuid, Vec<u8>)>,
+    pub acknowledgements: Vec<Acknowledgement>,
+}
+
+/// Message that arrived from a ship.
+#[derive(Clone, Debug)]
+pub struct ShortBurst {
+    /// The caller's name for the message.
+    pub name: String,
+    /// Bytes of the message.
+    pub bytes: Vec<u8>,
+}
+
+/// Message to a ship that acknowledges the batches of a stream.
+#[derive(Clone, Debug)]
+pub struct Acknowledgement {
+    /// The stream.
+    pub stream: Uuid,
+    /// Bytes of the message.
+    pub bytes: Vec<u8>,
 }
 
 /// A batch of which messages are missing.
@@ -60,13 +78,13 @@ pub struct RefusedMessage {
 pub async fn import_messages(
     db: &Db,
     vessel: VesselId,
-    messages: &[(String, Vec<u8>)],
+    messages: &[ShortBurst],
     now: Time,
 ) -> Result<ImportResult> {
     let mut imported = ImportResult::default();
     let mut joiner = Joiner::default();
     let mut streams = BTreeSet::new();
-    for (name, bytes) in messages {
+    for ShortBurst { name, bytes } in messages {
         let refuse = |problem: String| RefusedMessage {
             message: name.clone(),
             problem,
@@ -94,9 +112,9 @@ pub async fn import_messages(
         .map(|(_, seq, messages, of)| IncompleteBatch { seq, messages, of })
         .collect();
     for stream in streams {
-        imported
-            .acknowledgements
-            .push((stream, acknowledgement(db, vessel, stream).await?));
+        let bytes = acknowledgement(db, vessel, stream).await?;
+        let acknowledgement = Acknowledgement { stream, bytes };
+        imported.acknowledgements.push(acknowledgement);
     }
     Ok(imported)
 }

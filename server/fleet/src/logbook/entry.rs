@@ -97,7 +97,7 @@ pub(super) struct LogbookEntry {
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = LogbookAuthor)]
-pub(super) enum AuthorKind {
+pub(crate) enum AuthorKind {
     /// On shore, by one of the operator's people or programs.
     User,
     /// On board, on the agent's page.

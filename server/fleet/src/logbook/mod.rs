@@ -15,6 +15,8 @@ mod entry;
 mod store;
 
 pub use agent_reports::router as agent_router;
+pub(crate) use entry::AuthorKind;
+pub(crate) use store::Change;
 pub use store::{AdjustmentEntry, of_compass, write_adjustment};
 
 use crate::vessels;
@@ -29,7 +31,7 @@ use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone, text};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{EntryId, VesselId};
 use entry::{Filter, LogbookEntry, LogbookList, NewEntry, RevisedEntry, Withdrawal};
-use store::{Author, Change};
+use store::Author;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 

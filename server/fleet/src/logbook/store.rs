@@ -3,12 +3,13 @@
 use super::entry::{AuthorKind, CheckedFilter, LogbookEntry, NewEntry, Revision};
 use crate::agent_auth::Agent;
 use crate::analysis_queue;
+use crate::event_kinds;
 use anyhow::Context;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::db::{Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::events::{self, Kind};
+use binnacle_platform::events;
 use binnacle_platform::http::Page;
 use binnacle_platform::ids::{CompassId, EntryId, UserId, VesselId};
 use binnacle_platform::session;
@@ -66,8 +67,8 @@ pub(super) struct Author {
     board_revision: Option<u32>,
 }
 
-/// A transaction that changes a vessel's logbook.
-pub(super) struct Change<'a> {
+/// A transaction that changes what people report of a vessel.
+pub(crate) struct Change<'a> {
     app: &'a App,
     vessel: VesselId,
     now: Time,
@@ -75,7 +76,7 @@ pub(super) struct Change<'a> {
 }
 
 impl<'a> Change<'a> {
-    pub(super) async fn begin(
+    pub(crate) async fn begin(
         app: &'a App,
         request: &RequestContext,
         vessel: VesselId,
@@ -90,14 +91,15 @@ impl<'a> Change<'a> {
         })
     }
 
-    pub(super) fn tx(&mut self) -> &mut Tx {
+    pub(crate) fn tx(&mut self) -> &mut Tx {
         &mut self.tx
     }
 
     /// Commits the change, enqueues an analysis of the vessel, and notifies dashboards.
-    pub(super) async fn commit(mut self) -> Result<()> {
+    pub(crate) async fn commit(mut self) -> Result<()> {
         analysis_queue::enqueue(&mut self.tx, self.vessel, self.now, 0.0).await?;
-        let event = events::insert(&mut self.tx, self.vessel, Kind::Logbook, self.now).await?;
+        let event =
+            events::insert(&mut self.tx, self.vessel, event_kinds::LOGBOOK, self.now).await?;
         self.tx.commit().await?;
         self.app.publish(event);
         self.app.work.notify_one();

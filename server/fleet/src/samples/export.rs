@@ -8,8 +8,8 @@ use binnacle_platform::error::{Error, Result};
 /// Not `weight`, which `fit` takes for one known beforehand: it would weight the
 /// samples twice.
 const ROBUST_WEIGHT: &str = "robust_weight";
-/// The columns that `fit` reads come first.
-const COLUMNS: [&str; 19] = [
+/// Later columns stand at the end, so that the others keep their places.
+const COLUMNS: [&str; 25] = [
     "time",
     "lat",
     "lon",
@@ -29,6 +29,12 @@ const COLUMNS: [&str; 19] = [
     ROBUST_WEIGHT,
     "used",
     "reason",
+    "cog_deg",
+    "roll_deg",
+    "roll_spread_deg",
+    "temperature_c",
+    "gyro_source",
+    "satellite_source",
 ];
 
 pub(super) fn csv(samples: &[SampleDiagnostic]) -> Result<Response> {

@@ -1,5 +1,6 @@
 //! Transition of a vessel out of service, or back into it.
 
+use crate::event_kinds;
 use crate::vessels::{VesselRow, set_out_of_service};
 use crate::{alerts, analysis_queue};
 use binnacle_platform::db::{DomainEvent, Tx};
@@ -46,7 +47,7 @@ pub(super) async fn set(
         at: now,
     };
     tx.publish(&change).await?;
-    let mut events_out = vec![events::insert(tx, vessel.id, events::Kind::Need, now).await?];
+    let mut events_out = vec![events::insert(tx, vessel.id, event_kinds::NEED, now).await?];
     if in_service {
         set_out_of_service(tx, vessel.id, None).await?;
         // It raises again the alerts whose causes still hold.

@@ -9,7 +9,9 @@
 mod imo;
 mod store;
 
-pub use store::{VesselRow, find_owner, find_row, is_in_service, must_be_in_fleet, names};
+pub use store::{
+    VesselNames, VesselRow, find_owner, find_row, is_in_service, must_be_in_fleet, names,
+};
 pub(crate) use store::{insert, list, lock, set_out_of_service, update};
 
 use binnacle_platform::error::{Error, Result};

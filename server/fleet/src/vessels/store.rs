@@ -116,14 +116,22 @@ pub async fn must_be_in_fleet(
         .ok_or(Error::NotFound("vessel"))
 }
 
+/// Vessel with the names by which a file may refer to it.
+#[derive(Clone, Debug, sqlx::FromRow)]
+pub struct VesselNames {
+    /// The vessel's id.
+    pub id: VesselId,
+    /// The vessel's name.
+    pub name: String,
+    /// IMO number, if the vessel has one.
+    pub imo_number: Option<String>,
+}
+
 /// Lists the fleet's vessels, with their names and IMO numbers.
-pub async fn names(
-    db: &Db,
-    operator: OperatorId,
-) -> Result<Vec<(VesselId, String, Option<String>)>> {
+pub async fn names(db: &Db, operator: OperatorId) -> Result<Vec<VesselNames>> {
     rows!(
         db,
-        (VesselId, String, Option<String>),
+        VesselNames,
         "SELECT id, name, imo_number FROM vessels WHERE operator_id = $1 ORDER BY id",
         operator
     )

@@ -87,7 +87,7 @@ async fn open<'a>(
     // The offer has entries of its own.
     let offer = new.offer.take();
     let now = app.clock.now().into();
-    request.concerns_vessel(vessel, Some(id));
+    request.concerns_vessel(vessel, Some(id.0));
     store::insert(&mut tx, id, &new, &author, now).await?;
     let stored = store::lock(&mut tx, vessel, id).await?;
     let mut change = Change::new(app, tx, stored, author, now, Uuid::now_v7());

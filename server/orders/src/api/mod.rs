@@ -72,7 +72,7 @@ async fn log_order(
 ) -> Response {
     let mut ids = path.iter().map(|(_, value)| Uuid::parse_str(value));
     if let Some(order) = ids.find_map(std::result::Result::ok) {
-        context.concerns_order(OrderId(order), store::find_vessel);
+        context.is_about(order, store::find_vessel);
     }
     context.log_reads_of_firms();
     next.run(request).await

@@ -15,10 +15,10 @@ use crate::work_orders::store;
 use binnacle_adjustment::adjust::UpdatedPrediction;
 use binnacle_adjustment::binnacle::Setting;
 use binnacle_fleet::binnacles;
+use binnacle_fleet::event_kinds;
 use binnacle_fleet::logbook;
 use binnacle_fleet::models::{self, ModelJson, StoredModel};
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::events::Kind;
 use binnacle_platform::ids::{BinnacleId, EntryId, ModelId};
 use binnacle_platform::time::Time;
 
@@ -135,8 +135,8 @@ pub(crate) async fn complete(
     change
         .append(OrderEvent::Completion(Box::new(completed)))
         .await?;
-    change.add_live_event(Kind::Model).await?;
-    change.add_live_event(Kind::Logbook).await
+    change.add_live_event(event_kinds::MODEL).await?;
+    change.add_live_event(event_kinds::LOGBOOK).await
 }
 
 /// Writes the present settings as a revision of the binnacle.

@@ -13,6 +13,6 @@ pub(crate) mod port_call_check;
 pub(crate) mod reschedule;
 
 pub use call_links::link_once;
-pub use new_port_calls::attach_new_calls;
+pub use new_port_calls::{NewCall, attach_new_calls};
 pub use offer_expiry::{lapse, watch};
 pub use port_call_changes::{CallUpdate, announce_call_updates};

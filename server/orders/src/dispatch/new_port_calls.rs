@@ -14,6 +14,15 @@ use binnacle_platform::events::Event;
 use binnacle_platform::ids::{CallId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 
+/// Port call to which orders may be linked.
+#[derive(Clone, Debug)]
+pub struct NewCall {
+    /// The call's id.
+    pub id: CallId,
+    /// Port and times of the call.
+    pub alongside: Alongside,
+}
+
 /// Links orders without a call to new calls of a vessel, whose row is locked. Returns the live
 /// events, to be published after the commit.
 ///
@@ -22,7 +31,7 @@ use binnacle_platform::time::Time;
 pub async fn attach_new_calls(
     tx: &mut Tx,
     vessel: VesselId,
-    new: &[(CallId, Alongside)],
+    new: &[NewCall],
     by: &str,
     now: Time,
 ) -> Result<Vec<Event>> {
@@ -37,20 +46,20 @@ pub async fn attach_new_calls(
         let Some((port, lost)) = port_and_lost_call(tx, vessel, order.id).await? else {
             continue;
         };
-        let lies_in = |call: &Alongside| {
-            let fit = call.fit(&port, order.planned_at);
+        let lies_in = |call: &&NewCall| {
+            let fit = call.alongside.fit(&port, order.planned_at);
             matches!(fit, CallFit::Fits | CallFit::OtherHour)
         };
-        let Some((id, is)) = new.iter().find(|(_, call)| lies_in(call)) else {
+        let Some(call) = new.iter().find(lies_in) else {
             continue;
         };
-        call_links::link(tx, vessel, order.id, *id).await?;
+        call_links::link(tx, vessel, order.id, call.id).await?;
         if let Some(lost) = lost {
             let update = CallUpdate {
                 call_id: lost.call_id,
-                then_id: *id,
+                then_id: call.id,
                 was: lost.is.unwrap_or(lost.was),
-                is: Some(is.clone()),
+                is: Some(call.alongside.clone()),
             };
             events.extend(
                 port_call_changes::announce_update(tx, vessel, order.id, &update, by, now).await?,

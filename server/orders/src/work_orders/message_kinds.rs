@@ -30,6 +30,9 @@ pub const CLOSED: Kind = Kind::new("order.closed");
 /// The order is cancelled.
 pub const CANCELLED: Kind = Kind::new("order.cancelled");
 
+/// Subject of all these kinds.
+pub const SUBJECT: &str = "work orders";
+
 /// All kinds, in the order in which the API lists them.
 pub const ALL: [DeclaredKind; 13] = [
     DeclaredKind::new(OFFERED, Audience::OperatorsAndFirms),

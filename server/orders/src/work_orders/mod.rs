@@ -13,6 +13,7 @@ pub(crate) mod events;
 pub(crate) mod log;
 pub mod message_kinds;
 pub(crate) mod new_order;
+pub mod notice_kinds;
 mod notification_text;
 pub(crate) mod offers;
 pub(crate) mod order;

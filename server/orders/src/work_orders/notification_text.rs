@@ -5,10 +5,11 @@
 
 use crate::work_orders::events::{Circumstances, Headline};
 use crate::work_orders::log::entry::Entry;
+use crate::work_orders::notice_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::summary::Summary;
 use binnacle_platform::mail;
-use binnacle_platform::notices::{Kind, Notice};
+use binnacle_platform::notices::Notice;
 use std::fmt::Write;
 
 /// Reader of a notification.
@@ -61,7 +62,7 @@ fn circumstances(entry: &Entry, offer_before: Option<OfferState>) -> Circumstanc
 /// Returns the notification of a withdrawn offer for the firm's people. It keeps the reason
 /// confidential.
 pub(crate) fn withdrawn(summary: &Summary, last: &Entry) -> Notice {
-    let headline = Headline::new(Kind::Withdrawn, "the offer is withdrawn");
+    let headline = Headline::new(notice_kinds::WITHDRAWN, "the offer is withdrawn");
     let facts = facts(summary, Reader::Firm);
     Notice {
         text: facts + "\nAnother firm may have the job, or it is cancelled.\n",
@@ -85,8 +86,7 @@ fn notice(headline: &Headline, facts: String, summary: &Summary, entry: &Entry) 
         text,
         path: format!("/work-orders/{}", summary.id),
         vessel: summary.vessel_id,
-        order: Some(summary.id),
-        alert: None,
+        about: Some(summary.id.0),
     }
 }
 

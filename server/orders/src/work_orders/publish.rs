@@ -3,6 +3,7 @@
 //! Invariants: all of it is written in the transaction of the change. A firm is informed of
 //! exchanges with the operator, and of everything else only while it has the order.
 
+use crate::event_kinds;
 use crate::work_orders::events::Audience;
 use crate::work_orders::log::entry::Entry;
 use crate::work_orders::message_kinds;
@@ -13,7 +14,7 @@ use crate::work_orders::store::StoredOrder;
 use crate::work_orders::summary::Summary;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
-use binnacle_platform::events::{self, Event};
+use binnacle_platform::events::{self, Event, NewEvent};
 use binnacle_platform::ids::{DeliveryId, FirmId, UserId};
 use binnacle_platform::notices::{Notice, NoticesPublished};
 use binnacle_platform::outbox::{Kind, Message};
@@ -77,8 +78,8 @@ pub(crate) async fn publish_changes(
         at: now,
     };
     tx.publish(&published).await?;
-    let (vessel, order) = (summary.vessel_id, summary.id);
-    let mut live = vec![events::insert_of_order(tx, vessel, order, None, now).await?];
+    let event = live_event(summary, None);
+    let mut live = vec![events::insert_event(tx, event, now).await?];
     // In the order of their ids, so that no two transactions wait for each other.
     for firm in firms(&before.offers, &offers) {
         let offer_before = before.offer_state(firm);
@@ -100,9 +101,20 @@ pub(crate) async fn publish_changes(
             at: now,
         };
         tx.publish(&published).await?;
-        live.push(events::insert_of_order(tx, vessel, order, Some(firm), now).await?);
+        let event = live_event(summary, Some(firm));
+        live.push(events::insert_event(tx, event, now).await?);
     }
     Ok(live)
+}
+
+/// Returns the live event of a change, for the operator or for one firm.
+fn live_event(summary: &Summary, firm_id: Option<FirmId>) -> NewEvent {
+    NewEvent {
+        vessel_id: summary.vessel_id,
+        kind: event_kinds::WORK_ORDER,
+        about: Some(summary.id.0),
+        firm_id,
+    }
 }
 
 /// Returns the entries for the operator: of one that the log repeats for each firm, the
@@ -224,7 +236,7 @@ fn message_with_entry(kind: Kind, summary: &Summary, entry: &Value, now: Time) -
     Message {
         id,
         kind,
-        order: Some(summary.id),
+        about: Some(summary.id.0),
         body: body.to_string(),
     }
 }

@@ -1,6 +1,6 @@
 //! Ways of delivery of a notification.
 
-use binnacle_platform::notices::Kind;
+use binnacle_platform::notices::{DeclaredKind, DefaultMail};
 use binnacle_platform::session::Role;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -21,13 +21,12 @@ pub(super) enum Channel {
 }
 
 impl Channel {
-    /// Returns the default way of a kind. Alerts have the operator's mailing list, and a viewer
-    /// gets no mail by default.
-    pub(super) fn default_for(kind: Kind, role: Role) -> Channel {
-        match (role, kind) {
-            (Role::Viewer, _) | (_, Kind::Alert) => Channel::List,
-            (_, Kind::DueSoon | Kind::Completed) => Channel::Digest,
-            _ => Channel::Mail,
+    /// Returns the default way of a kind. A viewer gets no mail by default.
+    pub(super) fn default_for(kind: DeclaredKind, role: Role) -> Channel {
+        match (role, kind.mail) {
+            (Role::Viewer, _) | (_, DefaultMail::Recipients) => Channel::List,
+            (_, DefaultMail::Digest) => Channel::Digest,
+            (_, DefaultMail::Letter) => Channel::Mail,
         }
     }
 }

@@ -9,7 +9,7 @@ use super::store;
 use binnacle_platform::db::{Tx, row, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::UserId;
-use binnacle_platform::notices::{Kind, Notice, NoticesPublished};
+use binnacle_platform::notices::{DefaultMail, Notice, NoticesPublished};
 use binnacle_platform::session::Role;
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
@@ -34,15 +34,18 @@ pub(super) async fn notify(
         return Ok(());
     }
     for person in list_people(tx, tenant.into()).await? {
-        let concerns =
-            |notice: &&Notice| notice.kind.concerns(person.role) && author != Some(person.id);
+        let concerns = |notice: &&Notice| {
+            notice.kind.readers.include(person.role) && author != Some(person.id)
+        };
         for notice in notices.iter().filter(concerns) {
             let way = person.settings.way(notice.kind, person.role);
             if way == Channel::Off {
                 continue;
             }
             let mut mail_at = person.settings.mail_at(way, notice.urgent, now);
-            if notice.kind == Kind::Alert && is_on_the_mailing_list(tx, person.id).await? {
+            if notice.kind.mail == DefaultMail::Recipients
+                && is_mail_recipient(tx, person.id).await?
+            {
                 mail_at = None;
             }
             store::insert(tx, person.id, notice, mail_at, now).await?;
@@ -75,8 +78,8 @@ async fn list_people(tx: &mut Tx, tenant: Tenant) -> Result<Vec<Person>> {
     found.into_iter().map(read).collect()
 }
 
-/// Returns whether a user is on the operator's mailing list, which gets mail of each alert.
-async fn is_on_the_mailing_list(tx: &mut Tx, user: UserId) -> Result<bool> {
+/// Returns whether a user is one of the operator's mail recipients.
+async fn is_mail_recipient(tx: &mut Tx, user: UserId) -> Result<bool> {
     let found = row!(
         in tx,
         (i64,),

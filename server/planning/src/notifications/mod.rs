@@ -10,6 +10,7 @@
 mod channel;
 mod create;
 mod digest;
+mod kinds;
 mod needs;
 mod notification;
 mod send;
@@ -17,7 +18,8 @@ mod settings;
 mod store;
 
 pub use create::create_notifications;
-pub use needs::notify_of_needs;
+pub use kinds::NoticeKinds;
+pub use needs::{NOTICE_KINDS, notify_of_needs};
 pub use send::{MESSAGE_KIND, send_due, watch};
 
 use axum::extract::{FromRef, State};
@@ -32,10 +34,10 @@ use binnacle_platform::notices::Kind;
 use binnacle_platform::session::Role;
 use binnacle_platform::time::Time;
 use channel::Channel;
+use indexmap::IndexMap;
 use notification::{Filter, Notification};
 use serde::{Deserialize, Serialize};
 use settings::Settings;
-use std::collections::BTreeMap;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -44,6 +46,7 @@ use utoipa_axum::routes;
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    NoticeKinds: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new()
@@ -93,7 +96,8 @@ struct SettingsInForce {
     /// Your settings.
     settings: Settings,
     /// Every kind that concerns you, with its way of delivery.
-    ways: BTreeMap<Kind, Channel>,
+    #[schema(value_type = BTreeMap<Kind, Channel>)]
+    ways: IndexMap<&'static str, Channel>,
     /// Address for mail, with which you sign in.
     #[schema(example = "ada@example.com")]
     address: String,
@@ -110,11 +114,13 @@ struct SettingsInForce {
     responses((status = 200, body = NotificationList), (status = 401, body = Problem)))]
 async fn list_notifications(
     State(app): State<App>,
+    State(kinds): State<NoticeKinds>,
     caller: Caller,
     Params(filter): Params<Filter>,
     page: Page,
 ) -> Result<Json<NotificationList>> {
     let user = require_recipient(&caller)?.user.user_id;
+    filter.check(&kinds)?;
     let before = page.after_id()?;
     let found = store::list(&app.db, user, &filter, before, page.fetch()).await?;
     let listed = page.cut(found, |notification| notification.id.to_string());
@@ -173,10 +179,11 @@ async fn change_notification(
     responses((status = 200, body = SettingsInForce), (status = 401, body = Problem)))]
 async fn find_notification_settings(
     State(app): State<App>,
+    State(kinds): State<NoticeKinds>,
     caller: Caller,
 ) -> Result<Json<SettingsInForce>> {
     let settings = store::find_settings(&app.db, require_recipient(&caller)?.user.user_id).await?;
-    Ok(Json(SettingsInForce::new(&app, &caller, settings)))
+    Ok(Json(SettingsInForce::new(&app, &kinds, &caller, settings)))
 }
 
 /// Change your notification settings
@@ -187,22 +194,24 @@ async fn find_notification_settings(
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn change_notification_settings(
     State(app): State<App>,
+    State(kinds): State<NoticeKinds>,
     request: RequestContext,
     caller: Caller,
     Valid(settings): Valid<Settings>,
 ) -> Result<Json<SettingsInForce>> {
     caller.must_not_only_read()?;
     let (user, role) = (require_recipient(&caller)?.user.user_id, caller.user.role);
-    let settings = settings.checked(role)?;
+    let settings = settings.checked(role, &kinds)?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
     store::put_settings(&mut tx, user, &settings, now).await?;
-    for (id, kind, urgent) in store::list_waiting_for_mail(&mut tx, user).await? {
+    for (id, name, urgent) in store::list_waiting_for_mail(&mut tx, user).await? {
+        let kind = kinds.find(&name).map_err(anyhow::Error::msg)?;
         let mail_at = settings.mail_at(settings.way(kind, role), urgent, now);
         store::reschedule_mail(&mut tx, user, id, mail_at).await?;
     }
     tx.commit().await?;
-    Ok(Json(SettingsInForce::new(&app, &caller, settings)))
+    Ok(Json(SettingsInForce::new(&app, &kinds, &caller, settings)))
 }
 
 /// Returns the caller if they get notifications at all.
@@ -215,11 +224,12 @@ fn require_recipient(caller: &Caller) -> Result<&Caller> {
 }
 
 impl SettingsInForce {
-    fn new(app: &App, caller: &Caller, settings: Settings) -> SettingsInForce {
+    fn new(app: &App, kinds: &NoticeKinds, caller: &Caller, settings: Settings) -> SettingsInForce {
         let role: Role = caller.user.role;
-        let kinds = Kind::ALL.into_iter().filter(|kind| kind.concerns(role));
+        let own = kinds.all().filter(|kind| kind.readers.include(role));
+        let ways = own.map(|kind| (kind.name(), settings.way(kind, role)));
         SettingsInForce {
-            ways: kinds.map(|kind| (kind, settings.way(kind, role))).collect(),
+            ways: ways.collect(),
             address: caller.user.email.clone(),
             sending: app.config.mail.is_set_up(),
             next_digest_at: settings.next_digest(app.clock.now().into()),

@@ -7,19 +7,28 @@ use super::create::notify;
 use super::store::{self, RecordedNeed};
 use crate::needs::{Need, find_need, load_facts, store_deviation_histories};
 use crate::schedule_settings;
-use binnacle_fleet::operators;
+use binnacle_fleet::{event_kinds, operators};
 use binnacle_platform::app::App;
 use binnacle_platform::error::Result;
 use binnacle_platform::events;
 use binnacle_platform::ids::{CompassId, OperatorId};
-use binnacle_platform::notices::Kind;
-use binnacle_platform::notices::Notice;
+use binnacle_platform::notices::{DeclaredKind, DefaultMail, Notice, Readers};
 use binnacle_platform::time::Time;
 use binnacle_schedule::needs::{CauseKind, Urgency};
 use chrono::NaiveDate;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use tracing::error;
+
+/// A compass needs adjustment soon or very soon, or is overdue.
+const DUE_SOON: DeclaredKind =
+    DeclaredKind::new("due_soon", Readers::Operators, DefaultMail::Digest);
+/// A due date was brought forward.
+const NEED_RAISED: DeclaredKind =
+    DeclaredKind::new("need_raised", Readers::Operators, DefaultMail::Letter);
+
+/// Kinds of notices about needs, in the order in which the API lists them.
+pub const NOTICE_KINDS: [DeclaredKind; 2] = [DUE_SOON, NEED_RAISED];
 
 /// Days that a due date must move forward for a notification: predictions shift it by a few days.
 const BROUGHT_FORWARD_DAYS: i64 = 7;
@@ -67,7 +76,7 @@ async fn notify_operator(app: &App, operator: OperatorId) -> Result<usize> {
         let mut event = None;
         if let Some(kind) = choose_kind(&need, known.as_ref())? {
             notify(&mut tx, operator, &[write_notice(&need, kind)], None, now).await?;
-            event = Some(events::insert(&mut tx, need.vessel_id, events::Kind::Need, now).await?);
+            event = Some(events::insert(&mut tx, need.vessel_id, event_kinds::NEED, now).await?);
             notified += 1;
         }
         tx.commit().await?;
@@ -95,24 +104,24 @@ fn to_record(need: &Need) -> Result<RecordedNeed> {
 }
 
 /// Returns the kind of notification that a need calls for, if any, given its last record.
-fn choose_kind(need: &Need, known: Option<&RecordedNeed>) -> Result<Option<Kind>> {
+fn choose_kind(need: &Need, known: Option<&RecordedNeed>) -> Result<Option<DeclaredKind>> {
     let is_pressing = need.urgency > Urgency::Routine;
     let Some(known) = known else {
-        return Ok(is_pressing.then_some(Kind::DueSoon));
+        return Ok(is_pressing.then_some(DUE_SOON));
     };
     let urgency: Urgency = serde_json::from_value(Value::String(known.urgency.clone()))?;
     let due_on: NaiveDate = known.due_on.parse().map_err(anyhow::Error::from)?;
     let is_earlier = (due_on - need.due_on).num_days() > BROUGHT_FORWARD_DAYS;
     let cause = need.causes.first().map(|cause| cause.kind);
     if is_earlier && !matches!(cause, Some(CauseKind::Interval | CauseKind::NeverAdjusted)) {
-        return Ok(Some(Kind::NeedRaised));
+        return Ok(Some(NEED_RAISED));
     }
-    Ok((is_pressing && need.urgency > urgency).then_some(Kind::DueSoon))
+    Ok((is_pressing && need.urgency > urgency).then_some(DUE_SOON))
 }
 
-fn write_notice(need: &Need, kind: Kind) -> Notice {
+fn write_notice(need: &Need, kind: DeclaredKind) -> Notice {
     let status = match (kind, need.urgency) {
-        (Kind::NeedRaised, _) => "due for adjustment sooner",
+        (NEED_RAISED, _) => "due for adjustment sooner",
         (_, Urgency::Overdue) => "overdue for adjustment",
         _ => "due for adjustment soon",
     };
@@ -131,8 +140,7 @@ fn write_notice(need: &Need, kind: Kind) -> Notice {
         ),
         path: format!("/vessels/{}", need.vessel_id),
         vessel: need.vessel_id,
-        order: None,
-        alert: None,
+        about: None,
     }
 }
 

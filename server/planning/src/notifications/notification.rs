@@ -1,5 +1,7 @@
 //! A notification and the filter of a list.
 
+use super::kinds::NoticeKinds;
+use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{AlertId, NotificationId, OrderId, VesselId};
 use binnacle_platform::notices::Kind;
 use binnacle_platform::time::Time;
@@ -12,7 +14,8 @@ pub(super) struct Notification {
     /// The notification's id.
     pub(super) id: NotificationId,
     /// Kind of event.
-    pub(super) kind: Kind,
+    #[schema(value_type = Kind)]
+    pub(super) kind: String,
     /// `true` when its mail skips quiet hours and digests.
     pub(super) urgent: bool,
     /// Subject line.
@@ -46,5 +49,20 @@ pub(super) struct Filter {
     /// Only unread ones (`true`) or only read ones (`false`).
     pub(super) unread: Option<bool>,
     /// Only of this kind.
-    pub(super) kind: Option<Kind>,
+    #[param(value_type = Option<Kind>)]
+    pub(super) kind: Option<String>,
+}
+
+impl Filter {
+    /// Checks the name of the kind.
+    ///
+    /// # Errors
+    /// Fails when there is no such kind.
+    pub(super) fn check(&self, kinds: &NoticeKinds) -> Result<()> {
+        let Some(Err(problem)) = self.kind.as_deref().map(|name| kinds.find(name)) else {
+            return Ok(());
+        };
+        let detail = format!("Failed to deserialize query string: kind: {problem}");
+        Err(Error::BadRequest(detail))
+    }
 }

@@ -87,7 +87,7 @@ async fn queue_mail(
         let message = Message {
             id: DeliveryId::new(),
             kind: MESSAGE_KIND.kind,
-            order: None,
+            about: None,
             body: letter?,
         };
         outbox::queue(tx, user.0, &message, now).await?;

@@ -3,15 +3,16 @@
 //! Invariant: times of day are in the person's own time zone, also when its clocks change.
 
 use super::channel::Channel;
+use super::kinds::NoticeKinds;
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::notices::Kind;
+use binnacle_platform::notices::{DeclaredKind, Kind};
 use binnacle_platform::session::Role;
 use binnacle_platform::time::Time;
 use binnacle_schedule::time::Instant;
 use binnacle_schedule::zone::Zone;
 use chrono::{Datelike, Days, NaiveDate, NaiveDateTime, NaiveTime};
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
 /// Notification settings of a person.
@@ -30,7 +31,8 @@ pub(super) struct Settings {
     pub(super) time_zone: Zone,
     /// Way of delivery for each kind; a kind that is left out has the default way.
     #[serde(default)]
-    pub(super) ways: BTreeMap<Kind, Channel>,
+    #[schema(value_type = BTreeMap<Kind, Channel>)]
+    pub(super) ways: IndexMap<String, Channel>,
     /// Hours without mail, except for critical alerts. Mail is held until they end.
     #[serde(default)]
     #[schema(required)]
@@ -103,7 +105,7 @@ impl Default for Settings {
     fn default() -> Settings {
         Settings {
             time_zone: Zone::utc(),
-            ways: BTreeMap::new(),
+            ways: IndexMap::new(),
             quiet_hours: None,
             digest: Digest::default(),
         }
@@ -127,20 +129,29 @@ impl From<TimeOfDay> for String {
 }
 
 impl Settings {
-    /// Returns the settings if they suit the role.
+    /// Returns the settings with their ways in the order of the kinds, if they suit the role.
     ///
     /// # Errors
-    /// Fails when a kind never reaches the role, or when quiet hours and digest collide.
-    pub(super) fn checked(self, role: Role) -> Result<Settings> {
+    /// Fails when a kind is unknown or never reaches the role, or when quiet hours and digest
+    /// collide.
+    pub(super) fn checked(mut self, role: Role, kinds: &NoticeKinds) -> Result<Settings> {
         let invalid = |field, detail: &str| {
             Err(Error::Invalid {
                 field,
                 detail: detail.to_owned(),
             })
         };
-        if !self.ways.keys().all(|kind| kind.concerns(role)) {
-            return invalid("ways", "has a kind that does not concern you");
+        for name in self.ways.keys() {
+            match kinds.find(name) {
+                Err(problem) => return invalid("body", &format!("ways: {problem}")),
+                Ok(kind) if !kind.readers.include(role) => {
+                    return invalid("ways", "has a kind that does not concern you");
+                }
+                Ok(_) => {}
+            }
         }
+        self.ways
+            .sort_by_key(|name, _| kinds.names().position(|known| known == name));
         if let Some(quiet) = self.quiet_hours {
             if quiet.from == quiet.to {
                 return invalid("quiet_hours", "start and end at the same time");
@@ -153,8 +164,8 @@ impl Settings {
     }
 
     /// Returns the way of delivery for a kind.
-    pub(super) fn way(&self, kind: Kind, role: Role) -> Channel {
-        let chosen = self.ways.get(&kind).copied();
+    pub(super) fn way(&self, kind: DeclaredKind, role: Role) -> Channel {
+        let chosen = self.ways.get(kind.name()).copied();
         chosen.unwrap_or_else(|| Channel::default_for(kind, role))
     }
 
@@ -236,10 +247,16 @@ impl Digest {
 mod tests {
     use super::*;
     use binnacle_compass::time::Timestamp;
+    use binnacle_fleet::alerts::NOTICE_KIND;
+    use binnacle_orders::work_orders::notice_kinds::{ANSWERED, OFFERED};
     use serde_json::json;
 
     fn settings(value: serde_json::Value) -> Settings {
         serde_json::from_value(value).unwrap()
+    }
+
+    fn kinds() -> NoticeKinds {
+        [OFFERED, ANSWERED, NOTICE_KIND].into_iter().collect()
     }
 
     fn time(text: &str) -> Time {
@@ -313,7 +330,6 @@ mod tests {
             json!({ "quiet_hours": { "from": "7:00", "to": "22:00" } }),
             json!({ "digest": { "every": "month", "at": "07:00" } }),
             json!({ "digest": { "every": "week", "at": "07:00" } }),
-            json!({ "ways": { "gossip": "mail" } }),
             json!({ "ways": { "alert": "pigeon" } }),
             json!({ "colour": "blue" }),
         ] {
@@ -326,8 +342,18 @@ mod tests {
             json!({ "quiet_hours": { "from": "07:00", "to": "07:00" } }),
             json!({ "quiet_hours": { "from": "22:00", "to": "08:00" } }),
             json!({ "ways": { "offered": "mail" } }),
+            json!({ "ways": { "gossip": "mail" } }),
         ] {
-            assert!(settings(bad.clone()).checked(Role::Admin).is_err(), "{bad}");
+            let checked = settings(bad.clone()).checked(Role::Admin, &kinds());
+            assert!(checked.is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn ways_are_kept_in_the_order_of_the_kinds() {
+        let given = settings(json!({ "ways": { "alert": "list", "answered": "mail" } }));
+        let checked = given.checked(Role::Admin, &kinds()).unwrap();
+        let names: Vec<&str> = checked.ways.keys().map(String::as_str).collect();
+        assert_eq!(names, ["answered", "alert"]);
     }
 }

@@ -2,10 +2,10 @@
 
 use super::notification::{Filter, Notification};
 use super::settings::Settings;
+use binnacle_fleet::alerts;
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, NotificationId, OperatorId, UserId, VesselId};
-use binnacle_platform::notices::Kind;
 use binnacle_platform::notices::Notice;
 use binnacle_platform::time::Time;
 use uuid::Uuid;
@@ -53,6 +53,11 @@ pub(super) async fn insert(
     mail_at: Option<Time>,
     now: Time,
 ) -> DbResult<()> {
+    // Of the things of a vessel, work orders and alerts are those with notices of their own.
+    let (order, alert) = match notice.kind {
+        alerts::NOTICE_KIND => (None, notice.about),
+        _ => (notice.about, None),
+    };
     execute!(
         tx,
         "INSERT INTO notifications (user_id, id, kind, urgent, subject, text, path, vessel_id,
@@ -60,14 +65,14 @@ pub(super) async fn insert(
          VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12)",
         user,
         NotificationId::new(),
-        notice.kind,
+        notice.kind.name(),
         notice.urgent,
         notice.subject.as_str(),
         notice.text.as_str(),
         notice.path.as_str(),
         notice.vessel,
-        notice.order,
-        notice.alert,
+        order,
+        alert,
         now,
         mail_at
     )?;
@@ -96,7 +101,7 @@ pub(super) async fn list(
         user,
         before.unwrap_or(Uuid::max()),
         filter.unread,
-        filter.kind,
+        filter.kind.as_deref(),
         limit
     )
 }
@@ -151,10 +156,10 @@ pub(super) async fn mark_read(
 pub(super) async fn list_waiting_for_mail(
     tx: &mut Tx,
     user: UserId,
-) -> DbResult<Vec<(NotificationId, Kind, bool)>> {
+) -> DbResult<Vec<(NotificationId, String, bool)>> {
     rows!(
         in tx,
-        (NotificationId, Kind, bool),
+        (NotificationId, String, bool),
         "SELECT id, kind, urgent FROM notifications
          WHERE user_id = $1 AND mail_at IS NOT NULL
          ORDER BY id",

@@ -1,5 +1,6 @@
 //! End of a transaction that changes port calls: events are stored, then published.
 
+use crate::event_kinds;
 use binnacle_platform::app::App;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
@@ -17,7 +18,7 @@ pub(super) async fn commit(
     now: Time,
 ) -> Result<()> {
     for vessel in vessels {
-        pending.push(events::insert(&mut tx, *vessel, events::Kind::PortCall, now).await?);
+        pending.push(events::insert(&mut tx, *vessel, event_kinds::PORT_CALL, now).await?);
     }
     tx.commit().await?;
     for event in pending {

@@ -152,7 +152,7 @@ async fn enter_port_call(
         check_overlap(&known, None, &call)?;
         let author = Author::from_user(&mut tx, writer.user, now).await?;
         store::insert(&mut tx, vessel, id, &call, Source::Api, &author).await?;
-        let new = [(id, moves::alongside(&call))];
+        let new = [moves::new_call(id, &call)];
         let pending = attach_new_calls(&mut tx, vessel, &new, &author.name, now).await?;
         commit(&app, tx, &[vessel], pending, now).await?;
     }
@@ -215,7 +215,7 @@ async fn amend_port_call(
     let mut pending =
         announce_call_updates(&mut tx, vessel, moving.as_slice(), &author.name, now).await?;
     store::revise(&mut tx, current, &amended, Source::Api, &author).await?;
-    let new = [(id, moves::alongside(&amended))];
+    let new = [moves::new_call(id, &amended)];
     pending.extend(attach_new_calls(&mut tx, vessel, &new, &author.name, now).await?);
     commit(&app, tx, &[vessel], pending, now).await?;
     Ok(Json(find_call(&app, writer.operator, vessel, id).await?))

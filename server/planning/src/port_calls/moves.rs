@@ -2,8 +2,8 @@
 
 use super::call::Content;
 use super::store::StoredCall;
-use super::uploaded_file::FileChanges;
-use binnacle_orders::dispatch::CallUpdate;
+use super::uploaded_file::{FileChanges, WithdrawnCall};
+use binnacle_orders::dispatch::{CallUpdate, NewCall};
 use binnacle_orders::work_orders::Alongside;
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::CallId;
@@ -42,8 +42,8 @@ pub(super) fn of_file(
     new: &[(CallId, &Content)],
 ) -> Result<Vec<CallUpdate>> {
     let mut all = Vec::new();
-    for (row, call) in &changes.amended {
-        all.extend(amended(row, call)?);
+    for call in &changes.amended {
+        all.extend(amended(call.stored, &call.content)?);
     }
     let mut at_port: BTreeMap<String, AtPort<'_>> = BTreeMap::new();
     let mut in_order: Vec<&(CallId, &Content)> = new.iter().collect();
@@ -52,12 +52,12 @@ pub(super) fn of_file(
         let port = at_port.entry(one.1.port.to_string()).or_default();
         port.new.push((one, false));
     }
-    for (row, _) in &changes.withdrawn {
-        if let Some(port) = at_port.get_mut(&row.port) {
+    for call in &changes.withdrawn {
+        if let Some(port) = at_port.get_mut(&call.stored.port) {
             port.withdrawn += 1;
         }
     }
-    for (row, _) in &changes.withdrawn {
+    for WithdrawnCall { stored: row, .. } in &changes.withdrawn {
         let moving = withdrawn(row)?;
         let port = at_port.get_mut(&row.port);
         all.push(match port.and_then(|port| port.successor(row)) {
@@ -99,6 +99,14 @@ impl<'a> AtPort<'a> {
         let (one, is_used) = &mut self.new[found?];
         *is_used = true;
         Some(one)
+    }
+}
+
+/// Returns a call with an id as orders without one may get it.
+pub(super) fn new_call(id: CallId, call: &Content) -> NewCall {
+    NewCall {
+        id,
+        alongside: alongside(call),
     }
 }
 

@@ -10,7 +10,7 @@ use super::uploaded_file::{
 use axum::body::Body;
 use axum::extract::{FromRef, State};
 use axum::response::Response;
-use binnacle_fleet::vessels;
+use binnacle_fleet::vessels::{self, VesselNames};
 use binnacle_orders::dispatch::{announce_call_updates, attach_new_calls};
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
@@ -123,7 +123,11 @@ async fn upload_csv(
     let now: Time = app.clock.now().into();
     let id = vessel.to_string();
     let (rows, mut errors) = read_csv(bytes, Some(id), now).await?;
-    let fleet = [(vessel, row.name, row.imo_number)];
+    let fleet = [VesselNames {
+        id: vessel,
+        name: row.name,
+        imo_number: row.imo_number,
+    }];
     let mut vessels = group_by_vessel(rows.calls, &fleet, now, &mut errors)?;
     vessels.entry(vessel).or_default();
     let file = ParsedFile {
@@ -266,17 +270,16 @@ async fn store_file(
             store::insert(&mut tx, vessel, *id, call, source, &author).await?;
         }
         pending.extend(announce_call_updates(&mut tx, vessel, &moving, &author.name, now).await?);
-        for (row, call) in amended {
-            store::revise(&mut tx, row, call, source, &author).await?;
+        for call in amended {
+            store::revise(&mut tx, call.stored, &call.content, source, &author).await?;
         }
-        for (row, why) in withdrawn {
-            store::withdraw(&mut tx, row, Some(why), &author).await?;
+        for call in withdrawn {
+            store::withdraw(&mut tx, call.stored, Some(call.reason), &author).await?;
         }
-        let current = new.iter().map(|(id, call)| (*id, *call));
-        let current = current.chain(amended.iter().map(|(row, call)| (row.id, call)));
-        let current: Vec<_> = current
-            .map(|(id, call)| (id, moves::alongside(call)))
-            .collect();
+        let current = new.iter().map(|(id, call)| moves::new_call(*id, call));
+        let revised = amended.iter();
+        let revised = revised.map(|call| moves::new_call(call.stored.id, &call.content));
+        let current: Vec<_> = current.chain(revised).collect();
         pending.extend(attach_new_calls(&mut tx, vessel, &current, &author.name, now).await?);
     }
     errors.into_result(()).map_err(refuse_file)?;

@@ -3,6 +3,7 @@
 use super::call::{Content, Source};
 use super::store::StoredCall;
 use axum::body::Body;
+use binnacle_fleet::vessels::VesselNames;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::VesselId;
 use binnacle_platform::time::Time;
@@ -42,16 +43,33 @@ pub(super) async fn read_body(body: Body) -> Result<Vec<u8>> {
 #[derive(Default)]
 pub(super) struct FileChanges<'a> {
     pub(super) new: Vec<Content>,
-    pub(super) amended: Vec<(&'a StoredCall, Content)>,
+    pub(super) amended: Vec<AmendedCall<'a>>,
     pub(super) unchanged: usize,
-    /// Withdrawn calls, each with the reason.
-    pub(super) withdrawn: Vec<(&'a StoredCall, &'static str)>,
+    pub(super) withdrawn: Vec<WithdrawnCall<'a>>,
+}
+
+/// Stored call that a file amends.
+pub(super) struct AmendedCall<'a> {
+    pub(super) stored: &'a StoredCall,
+    pub(super) content: Content,
+}
+
+/// Stored call that a file withdraws.
+pub(super) struct WithdrawnCall<'a> {
+    pub(super) stored: &'a StoredCall,
+    pub(super) reason: &'static str,
+}
+
+/// Call on a line of a file.
+pub(super) struct CallOnLine {
+    line: usize,
+    content: Content,
 }
 
 /// Calls of one vessel in a file.
 #[derive(Default)]
 pub(super) struct VesselCalls {
-    pub(super) calls: Vec<(usize, Content)>,
+    pub(super) calls: Vec<CallOnLine>,
     pub(super) cancelled: BTreeSet<String>,
 }
 
@@ -65,7 +83,7 @@ impl VesselCalls {
     ) -> Result<()> {
         let line = located.line;
         match Content::from_file(located.call).checked(now) {
-            Ok(content) => self.calls.push((line, content)),
+            Ok(content) => self.calls.push(CallOnLine { line, content }),
             Err(Error::Invalid { field, detail }) => {
                 errors.push(FileError::new(line, field, detail));
             }
@@ -87,7 +105,7 @@ impl VesselCalls {
         let lines: BTreeMap<String, usize> = self
             .calls
             .iter()
-            .map(|(line, call)| (call.reference.clone(), *line))
+            .map(|call| (call.content.reference.clone(), call.line))
             .collect();
         let withdrawal_reason = |row: &StoredCall| {
             if self.cancelled.contains(&row.reference) {
@@ -107,18 +125,24 @@ impl VesselCalls {
                 continue;
             }
             match withdrawal_reason(row) {
-                Some(why) => changes.withdrawn.push((row, why)),
+                Some(reason) => changes.withdrawn.push(WithdrawnCall {
+                    stored: row,
+                    reason,
+                }),
                 None => calls.push(row.content()?.to_schedule_call(&row.reference, "")),
             }
         }
-        for (_, call) in self.calls {
+        for CallOnLine { content: call, .. } in self.calls {
             calls.push(call.to_schedule_call(&call.reference, ""));
             match by_reference.get(call.reference.as_str()).copied() {
                 None => changes.new.push(call),
                 Some(row) if row.withdrawn_at.is_none() && row.content()? == call => {
                     changes.unchanged += 1;
                 }
-                Some(row) => changes.amended.push((row, call)),
+                Some(stored) => changes.amended.push(AmendedCall {
+                    stored,
+                    content: call,
+                }),
             }
         }
         for (later, earlier) in find_overlaps(&calls) {
@@ -142,19 +166,19 @@ impl VesselCalls {
 /// `errors`.
 pub(super) fn group_by_vessel(
     calls: Vec<Located>,
-    fleet: &[(VesselId, String, Option<String>)],
+    fleet: &[VesselNames],
     now: Time,
     errors: &mut FileErrors,
 ) -> Result<BTreeMap<VesselId, VesselCalls>> {
     let mut named: BTreeMap<String, Vec<VesselId>> = BTreeMap::new();
-    for (id, name, imo_number) in fleet {
+    for vessel in fleet {
         let names = [
-            Some(id.to_string()),
-            Some(name.to_lowercase()),
-            imo_number.clone(),
+            Some(vessel.id.to_string()),
+            Some(vessel.name.to_lowercase()),
+            vessel.imo_number.clone(),
         ];
         for name in names.into_iter().flatten() {
-            named.entry(name).or_default().push(*id);
+            named.entry(name).or_default().push(vessel.id);
         }
     }
     let mut found: BTreeMap<VesselId, VesselCalls> = BTreeMap::new();

@@ -110,7 +110,7 @@ async fn make_report(
         let message = Message {
             id: DeliveryId::new(),
             kind: MESSAGE_KIND.kind,
-            order: None,
+            about: None,
             body: body.clone(),
         };
         outbox::queue(&mut tx, recipient.0, &message, made_at).await?;

@@ -8,6 +8,7 @@ use super::concurrency::{PlanLock, PlanSlots};
 use super::input::{Agreed, LoadedInput, Names, load_input};
 use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled};
 use super::store;
+use crate::event_kinds;
 use anyhow::Context;
 use binnacle_fleet::alerts;
 use binnacle_orders::dispatch;
@@ -196,7 +197,7 @@ async fn store_plan(
         alerts::reconcile_jobs_at_risk(&mut tx, operator, &at_risk, &unknown, plan.solved_at)
             .await?;
     for vessel in plan.changed_vessels() {
-        let kind = events::Kind::Schedule;
+        let kind = event_kinds::SCHEDULE;
         pending.push(events::insert(&mut tx, vessel, kind, plan.solved_at).await?);
     }
     tx.commit().await?;

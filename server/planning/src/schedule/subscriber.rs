@@ -1,8 +1,11 @@
 //! Handlers of events that change the schedule's input: each requests a new schedule.
 
 use super::store;
+use crate::event_kinds::PORT_CALL;
+use binnacle_fleet::event_kinds::{LOGBOOK, MODEL};
 use binnacle_fleet::particulars::ParticularsChanged;
 use binnacle_fleet::vessel_api::ServiceChanged;
+use binnacle_orders::event_kinds::WORK_ORDER;
 use binnacle_orders::firms::TermsChanged;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
@@ -14,7 +17,7 @@ pub fn on_vessel_event<'a>(tx: &'a mut Tx, stored: &'a EventStored) -> BoxFuture
     Box::pin(async move {
         let event = &stored.event;
         // A firm's copy of an event changes nothing more.
-        if event.firm_id.is_none() && changes_input(event.kind) {
+        if event.firm_id.is_none() && changes_input(&event.kind) {
             store::request_schedule(tx, event.operator_id, stored.at).await?;
         }
         Ok(())
@@ -43,9 +46,7 @@ pub fn on_particulars_change<'a>(
 }
 
 /// Returns whether a schedule depends on events of this kind.
-fn changes_input(kind: Kind) -> bool {
-    matches!(
-        kind,
-        Kind::Model | Kind::Logbook | Kind::WorkOrder | Kind::PortCall
-    )
+fn changes_input(kind: &Kind) -> bool {
+    let input = [MODEL, LOGBOOK, WORK_ORDER, PORT_CALL];
+    input.contains(kind)
 }

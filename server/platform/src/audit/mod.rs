@@ -1,9 +1,9 @@
-//! Audit log: changes by anyone, and work-order data read by firms.
+//! Audit log: changes by anyone, and data of operators read by firms.
 //!
 //! Invariants:
 //!
 //! - Every change in the database has a line, written in the transaction of the change.
-//!   Work-order data is sent to a firm only after its line is on disk. A refused request is
+//!   Such data is sent to a firm only after its line is on disk. A refused request is
 //!   logged too, after the response is known, if the caller is known.
 //! - A line contains no secret: no body, no query, no header, and of a path only ids and
 //!   numbers.

@@ -3,7 +3,7 @@
 use super::trail::{Actor, AuditTrail, Facts, FindVessel};
 use crate::db::{self, Db, Tx};
 use crate::error::{Error, Result};
-use crate::ids::{OrderId, VesselId};
+use crate::ids::VesselId;
 use crate::tenants::Tenant;
 use crate::time::Time;
 use axum::extract::FromRequestParts;
@@ -75,19 +75,19 @@ impl RequestContext {
         self.trail.facts().tenant = Some(tenant);
     }
 
-    /// Records the vessel concerned, and its order if any, where the path does not identify
-    /// them.
-    pub fn concerns_vessel(&self, vessel: VesselId, order: Option<OrderId>) {
+    /// Records the vessel concerned where the path does not identify it, and what of it the
+    /// request is about, if that is a single thing.
+    pub fn concerns_vessel(&self, vessel: VesselId, about: Option<Uuid>) {
         let mut facts = self.trail.facts();
         facts.vessel = Some(vessel);
-        facts.order = order.or(facts.order);
+        facts.about = about.or(facts.about);
     }
 
-    /// Records the order concerned. Its vessel is looked up when the line is written, and
-    /// only for a successful request: a refusal must not reveal whose order it is.
-    pub fn concerns_order(&self, order: OrderId, find_vessel: FindVessel) {
+    /// Records what the request is about, of an unknown vessel. The vessel is looked up when the
+    /// line is written, and only for a successful request: a refusal must not reveal the owner.
+    pub fn is_about(&self, about: Uuid, find_vessel: FindVessel) {
         let mut facts = self.trail.facts();
-        facts.order = Some(order);
+        facts.about = Some(about);
         facts.find_vessel = Some(find_vessel);
     }
 

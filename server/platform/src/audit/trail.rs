@@ -11,9 +11,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use tracing::error;
 use uuid::Uuid;
 
-/// Function that finds the vessel of a work order.
-pub type FindVessel =
-    for<'a> fn(&'a mut Tx, OrderId) -> BoxFuture<'a, db::Result<Option<VesselId>>>;
+/// Function that finds the vessel of what a request is about.
+pub type FindVessel = for<'a> fn(&'a mut Tx, Uuid) -> BoxFuture<'a, db::Result<Option<VesselId>>>;
 
 /// Actor of a request.
 #[derive(Clone, Debug)]
@@ -95,8 +94,9 @@ pub(super) struct Facts {
     pub(super) actor: Option<Actor>,
     pub(super) tenant: Option<Tenant>,
     pub(super) vessel: Option<VesselId>,
-    pub(super) order: Option<OrderId>,
-    /// Lookup of the vessel, for an order that is known without it.
+    /// Id of what the request is about, if that is a single thing of the vessel.
+    pub(super) about: Option<Uuid>,
+    /// Lookup of the vessel, where only `about` is known.
     pub(super) find_vessel: Option<FindVessel>,
     /// True if the request is logged as a change, in the transaction of the change.
     pub(super) is_change: bool,
@@ -172,14 +172,13 @@ impl AuditTrail {
             return Ok(false);
         };
         let is_done = status.is_none_or(|status| status.is_success());
-        let order = facts.order;
         let named = facts.vessel.or(actor.vessel);
         let mut vessel = named.or(self.id_after("/api/v1/vessels/{id}").map(VesselId));
         // A refused request reveals nothing, and appears only in the caller's own log.
         let mut owner = None;
         if is_done {
-            if let (None, Some(order), Some(find)) = (vessel, order, facts.find_vessel) {
-                vessel = find(tx, order).await?;
+            if let (None, Some(about), Some(find)) = (vessel, facts.about, facts.find_vessel) {
+                vessel = find(tx, about).await?;
             }
             if let Some(vessel) = vessel {
                 owner = tx.ask(&OwnerOf(vessel)).await?;
@@ -212,7 +211,7 @@ impl AuditTrail {
             route: self.route.clone(),
             path: self.path.clone(),
             vessel_id: vessel,
-            order_id: order,
+            order_id: facts.about.map(OrderId),
             status: status.map(|status| i64::from(status.as_u16())),
         };
         store::insert(tx, &line).await?;

@@ -142,7 +142,7 @@ fn sent(event: Event) -> Sent {
     let data = VesselEvent {
         vessel_id: event.vessel_id,
         kind: event.kind,
-        order_id: event.order_id,
+        order_id: event.about.map(OrderId),
     };
     Sent::default()
         .event("vessel")

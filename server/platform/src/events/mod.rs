@@ -4,46 +4,24 @@
 //! dashboards of every server process on the same database: on PostgreSQL through LISTEN
 //! and NOTIFY, on SQLite (one process) directly.
 
+mod kind;
 mod live;
 mod store;
 
+pub use kind::Kind;
 pub use live::Live;
 pub(crate) use store::{CHANNEL, all_since, since};
-pub use store::{insert, insert_of_order, prune};
+pub use store::{NewEvent, insert, insert_event, prune};
 
 use crate::db::DomainEvent;
-use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
+use crate::ids::{EventId, FirmId, OperatorId, VesselId};
 use crate::tenants::Tenant;
 use crate::time::Time;
 use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
-/// Kind of change to a vessel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
-#[serde(rename_all = "snake_case")]
-#[sqlx(type_name = "text", rename_all = "snake_case")]
-#[schema(as = EventKind)]
-pub enum Kind {
-    /// A batch was received.
-    Batch,
-    /// A compass has a new model.
-    Model,
-    /// Something was reported, amended or withdrawn.
-    Logbook,
-    /// An alert was raised, updated, acknowledged or cleared.
-    Alert,
-    /// A work order has changed.
-    WorkOrder,
-    /// A port call was entered, amended or withdrawn.
-    PortCall,
-    /// The schedule of the vessel has changed.
-    Schedule,
-    /// A compass needs adjustment soon, or sooner than before.
-    Need,
-}
+use uuid::Uuid;
 
 /// Event, with the tenants that may receive it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, sqlx::FromRow)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, sqlx::FromRow)]
 pub struct Event {
     /// Id, from which a dashboard resumes.
     pub id: EventId,
@@ -51,11 +29,14 @@ pub struct Event {
     pub operator_id: OperatorId,
     /// Firm that receives the event; none if the operator does.
     pub firm_id: Option<FirmId>,
-    /// Work order concerned, if any.
-    pub order_id: Option<OrderId>,
+    /// Id of what the event is about, if that is a single thing of the vessel.
+    #[serde(rename = "order_id")]
+    #[sqlx(rename = "order_id")]
+    pub about: Option<Uuid>,
     /// The vessel concerned.
     pub vessel_id: VesselId,
     /// Kind of event.
+    #[sqlx(try_from = "String")]
     pub kind: Kind,
 }
 

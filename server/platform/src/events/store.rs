@@ -3,9 +3,10 @@
 use super::{Event, EventStored, Kind};
 use crate::db::{Connection, Db, Result, Tx, execute, rows};
 use crate::error;
-use crate::ids::{EventId, FirmId, OrderId, VesselId};
+use crate::ids::{EventId, FirmId, VesselId};
 use crate::tenants::{OwnerOf, Tenant};
 use crate::time::Time;
+use uuid::Uuid;
 
 /// Channel of PostgreSQL's NOTIFY.
 pub(crate) const CHANNEL: &str = "binnacle_events";
@@ -16,67 +17,70 @@ const OVERLAP_S: f64 = 10.0;
 /// Maximum number of events sent after a pause; beyond that, a dashboard should reload its data.
 const MAX_MISSED: i64 = 1000;
 
-/// Stores an event, which is announced when the transaction commits.
+/// Event to be stored.
+pub struct NewEvent {
+    /// The vessel concerned.
+    pub vessel_id: VesselId,
+    /// Kind of event.
+    pub kind: Kind,
+    /// Id of what the event is about, if that is a single thing of the vessel.
+    pub about: Option<Uuid>,
+    /// Firm that receives the event; none if the operator does.
+    pub firm_id: Option<FirmId>,
+}
+
+/// Stores an event for the operator of a vessel, which is announced when the transaction
+/// commits.
 pub async fn insert(
     tx: &mut Tx,
     vessel_id: VesselId,
     kind: Kind,
     now: Time,
 ) -> error::Result<Event> {
-    write(tx, vessel_id, kind, None, None, now).await
-}
-
-/// Stores an event of a work order, for its operator or for one firm.
-pub async fn insert_of_order(
-    tx: &mut Tx,
-    vessel_id: VesselId,
-    order: OrderId,
-    firm: Option<FirmId>,
-    now: Time,
-) -> error::Result<Event> {
-    write(tx, vessel_id, Kind::WorkOrder, firm, Some(order), now).await
-}
-
-async fn write(
-    tx: &mut Tx,
-    vessel_id: VesselId,
-    kind: Kind,
-    firm_id: Option<FirmId>,
-    order_id: Option<OrderId>,
-    now: Time,
-) -> error::Result<Event> {
-    let owner = tx.ask(&OwnerOf(vessel_id)).await?;
-    let owner = owner.ok_or_else(|| anyhow::anyhow!("vessel {vessel_id} is missing"))?;
-    let operator_id = owner.operator_id;
-    let event = Event {
-        id: EventId::new(),
-        operator_id,
-        firm_id,
-        order_id,
+    let new = NewEvent {
         vessel_id,
         kind,
+        about: None,
+        firm_id: None,
+    };
+    insert_event(tx, new, now).await
+}
+
+/// Stores an event, which is announced when the transaction commits.
+pub async fn insert_event(tx: &mut Tx, new: NewEvent, now: Time) -> error::Result<Event> {
+    let vessel_id = new.vessel_id;
+    let owner = tx.ask(&OwnerOf(vessel_id)).await?;
+    let owner = owner.ok_or_else(|| anyhow::anyhow!("vessel {vessel_id} is missing"))?;
+    let event = Event {
+        id: EventId::new(),
+        operator_id: owner.operator_id,
+        firm_id: new.firm_id,
+        about: new.about,
+        vessel_id,
+        kind: new.kind,
     };
     execute!(
         &mut *tx,
         "INSERT INTO events (id, operator_id, firm_id, order_id, vessel_id, kind, created_at)
          VALUES ($1, $2, $3, $4, $5, $6, $7)",
         event.id,
-        operator_id,
-        firm_id,
-        order_id,
-        vessel_id,
-        kind,
+        event.operator_id,
+        event.firm_id,
+        event.about,
+        event.vessel_id,
+        event.kind.name(),
         now
     )?;
-    tx.publish(&EventStored { event, at: now }).await?;
+    let stored = EventStored { event, at: now };
+    tx.publish(&stored).await?;
     if let Connection::Postgres(tx) = tx.connection() {
         sqlx::query("SELECT pg_notify($1, $2)")
             .bind(CHANNEL)
-            .bind(serde_json::to_string(&event)?)
+            .bind(serde_json::to_string(&stored.event)?)
             .execute(&mut **tx)
             .await?;
     }
-    Ok(event)
+    Ok(stored.event)
 }
 
 /// Returns the events since the given one. If that event is already deleted, returns all

@@ -102,6 +102,15 @@ pub fn optional_text(field: &'static str, value: Option<&str>) -> Result<Option<
     given.map(|value| text(field, value)).transpose()
 }
 
+/// Returns the reason for which a name is refused that is none of those known.
+pub fn unknown_name(name: &str, known: impl Iterator<Item = &'static str>) -> String {
+    let known: Vec<String> = known.map(|known| format!("`{known}`")).collect();
+    format!(
+        "unknown variant `{name}`, expected one of {}",
+        known.join(", ")
+    )
+}
+
 /// Parses a time of a query string.
 ///
 /// # Errors

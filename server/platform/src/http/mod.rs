@@ -12,6 +12,7 @@ pub use amended::{Amended, never_null};
 pub use file::{file, file_name};
 pub use json::{
     Id, Json, Params, Valid, ValidOrNone, degrees, is_control, optional_text, text, time,
+    unknown_name,
 };
 pub use page::{Listed, Page};
 

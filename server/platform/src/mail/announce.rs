@@ -54,7 +54,7 @@ pub async fn announce(
                 let message = Message {
                     id: announcement.id,
                     kind: announcement.kind,
-                    order: None,
+                    about: None,
                     body: serde_json::to_string(&announcement.letter)?,
                 };
                 outbox::queue(tx, recipient.0, &message, now).await?;
@@ -108,6 +108,12 @@ async fn note(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mail::TopicList;
+
+    const LIST: TopicList = TopicList {
+        subject: "storms",
+        promise: "storms reach this address",
+    };
 
     fn announced(phase: Phase, series: &str, severity: Severity) -> Announcement {
         Announcement {
@@ -117,7 +123,7 @@ mod tests {
             topic: Uuid::now_v7(),
             series: series.to_owned(),
             severity,
-            letter: Letter::test(),
+            letter: Letter::test(LIST),
         }
     }
 

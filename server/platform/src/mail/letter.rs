@@ -1,6 +1,6 @@
 //! Content of a letter: plain text, which every mail program shows alike.
 
-use super::mailing_list::{FileReference, MailingList};
+use super::mailing_list::{FileReference, MailingList, TopicList};
 use crate::severity::Severity;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
@@ -20,7 +20,7 @@ pub struct Letter {
     pub items: Vec<LetterItem>,
     /// Page of the dashboard to link to.
     pub path: String,
-    /// Alert or order concerned: mail programs group the letters about it.
+    /// Id of what the letter is about: mail programs group the letters about it.
     #[serde(alias = "alert")]
     pub about: Option<Uuid>,
     /// Files to attach.
@@ -51,8 +51,8 @@ impl LetterItem {
 /// Reason for which a recipient gets a letter.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Reason {
-    /// The recipient is on the company's list for alerts of a minimum severity.
-    Listed(Severity),
+    /// The recipient is on the company's list for topics of a minimum severity.
+    Listed(TopicList, Severity),
     /// The recipient has an account and chose this notification.
     Person,
     /// The recipient is on another list of the company.
@@ -61,11 +61,10 @@ pub(super) enum Reason {
 
 impl Letter {
     /// Returns the letter for a requested test.
-    pub(super) fn test() -> Letter {
+    pub(super) fn test(list: TopicList) -> Letter {
         Letter {
             subject: "Test mail from Binnacle".to_owned(),
-            text: "This is a test: alerts of your fleet's compasses reach this address.\n"
-                .to_owned(),
+            text: format!("This is a test: {}.\n", list.promise),
             items: Vec::new(),
             path: "/mail".to_owned(),
             about: None,
@@ -76,10 +75,11 @@ impl Letter {
     /// Returns the whole text, with a link and the reason why the recipient gets it.
     pub(super) fn text_for(&self, address: &str, reason: Reason, public_url: &str) -> String {
         let (reason, page) = match reason {
-            Reason::Listed(least) => (
+            Reason::Listed(list, least) => (
                 format!(
-                    "You get this because {address} is on your company's list for alerts from {least} \
-                     on. An administrator takes it off:"
+                    "You get this because {address} is on your company's list for {} from {least} \
+                     on. An administrator takes it off:",
+                    list.subject
                 ),
                 "/mail",
             ),

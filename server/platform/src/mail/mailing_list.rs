@@ -1,4 +1,5 @@
-//! Mailing list of another capability: it knows the addresses, and the files of a letter.
+//! Mailing lists of other capabilities: their words, and the addresses and files of one that keeps
+//! its own.
 
 use crate::db::{Db, Result};
 use crate::ids::OperatorId;
@@ -11,6 +12,16 @@ pub type FindAddress = for<'a> fn(&'a Db, Uuid) -> BoxFuture<'a, Result<Option<S
 
 /// Function that loads the files of a letter; `None` if there are none.
 pub type LoadFiles = for<'a> fn(&'a Db, &'a FileReference) -> BoxFuture<'a, Result<Option<Files>>>;
+
+/// Words of the letters to the recipients of topics with a minimum severity, from the capability
+/// that announces such topics.
+#[derive(Clone, Copy, Debug)]
+pub struct TopicList {
+    /// Subject of the list: "your company's list for … from warning on".
+    pub subject: &'static str,
+    /// Content of a test letter: "This is a test: …."
+    pub promise: &'static str,
+}
 
 /// Mailing list, connected when the server is put together.
 #[derive(Clone, Copy, Debug)]

@@ -19,7 +19,9 @@ mod store;
 
 pub use announce::{Announcement, Phase, announce};
 pub use letter::{Letter, LetterItem, header, one_line, wrapped};
-pub use mailing_list::{Content, File, FileReference, Files, FindAddress, LoadFiles, MailingList};
+pub use mailing_list::{
+    Content, File, FileReference, Files, FindAddress, LoadFiles, MailingList, TopicList,
+};
 pub use recipient::address;
 pub use relay::Relay;
 pub use send::Mailer;
@@ -42,6 +44,7 @@ use utoipa_axum::routes;
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    TopicList: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new()
@@ -162,6 +165,7 @@ async fn delete_recipient(
               (status = 409, description = "Mail is not set up on this server", body = Problem)))]
 async fn test_recipient(
     State(app): State<App>,
+    State(list): State<TopicList>,
     request: RequestContext,
     writer: Writer,
     Id(id): Id<RecipientId>,
@@ -171,8 +175,8 @@ async fn test_recipient(
     let message = Message {
         id: DeliveryId::new(),
         kind: Kind::TEST,
-        order: None,
-        body: serde_json::to_string(&Letter::test())?,
+        about: None,
+        body: serde_json::to_string(&Letter::test(list))?,
     };
     let queued = outbox::queue_one(&request, id.0, &message, app.clock.now().into()).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))

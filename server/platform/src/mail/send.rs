@@ -1,7 +1,7 @@
 //! Letters as messages (RFC 5322), and their carrier.
 
 use super::letter::{Letter, Reason};
-use super::mailing_list::{Content, Files, MailingList};
+use super::mailing_list::{Content, Files, MailingList, TopicList};
 use super::relay::Relay;
 use super::store;
 use crate::app::App;
@@ -24,6 +24,8 @@ pub struct Mailer {
     from: Mailbox,
     /// Public URL of the dashboard, without a trailing slash.
     public_url: String,
+    /// Words of the list for topics of a minimum severity.
+    topics: TopicList,
     /// Mailing list of another capability.
     list: Option<MailingList>,
 }
@@ -39,7 +41,7 @@ impl Mailer {
     ///
     /// # Errors
     /// Fails when a setting is not valid. The error names the setting, but no password.
-    pub fn new(config: &config::Mail) -> Result<Option<Mailer>> {
+    pub fn new(config: &config::Mail, topics: TopicList) -> Result<Option<Mailer>> {
         let (Some(relay), Some(from), Some(public_url)) =
             (&config.smtp_url, &config.mail_from, &config.public_url)
         else {
@@ -55,6 +57,7 @@ impl Mailer {
             relay,
             from,
             public_url: public_url.trim_end_matches('/').to_owned(),
+            topics,
             list: None,
         }))
     }
@@ -80,7 +83,7 @@ impl Mailer {
     /// Finds the addressee of a receiver's letters; `None` if removed or disabled.
     async fn find_addressee(&self, db: &Db, receiver: Uuid) -> db::Result<Option<Addressee>> {
         if let Some((address, least)) = store::find_listed(db, receiver).await? {
-            let reason = Reason::Listed(least);
+            let reason = Reason::Listed(self.topics, least);
             return Ok(Some(Addressee { address, reason }));
         }
         if let Some(list) = self.list

@@ -106,7 +106,7 @@ pub(super) async fn change(
     Ok(())
 }
 
-/// Returns the address and the minimum severity of a recipient of alerts.
+/// Returns the address and the minimum severity of a mail recipient.
 pub(super) async fn find_listed(db: &Db, id: Uuid) -> DbResult<Option<(String, Severity)>> {
     row!(
         db,
@@ -127,7 +127,7 @@ pub(super) async fn find_person(db: &Db, id: Uuid) -> DbResult<Option<String>> {
     Ok(person.map(|(email,)| email))
 }
 
-/// Returns the recipients of an operator's alerts, each with its minimum severity.
+/// Returns an operator's mail recipients, each with its minimum severity.
 pub(super) async fn list_recipients(
     tx: &mut Tx,
     operator: OperatorId,

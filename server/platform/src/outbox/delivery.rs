@@ -1,11 +1,12 @@
 //! Messages, and deliveries as the API shows them.
 
 use super::kind::Kind;
-use crate::ids::{DeliveryId, OrderId};
+use crate::ids::DeliveryId;
 use crate::time::Time;
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use utoipa::{IntoParams, ToSchema};
+use uuid::Uuid;
 
 /// Channel that carries messages to a receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, sqlx::Type)]
@@ -24,8 +25,8 @@ pub struct Message {
     pub id: DeliveryId,
     /// Subject of the message.
     pub kind: Kind,
-    /// Work order concerned, if any.
-    pub order: Option<OrderId>,
+    /// Id of what the message is about, if its messages form a sequence of their own.
+    pub about: Option<Uuid>,
     /// Body, JSON.
     pub body: String,
 }

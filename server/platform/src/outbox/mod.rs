@@ -4,9 +4,9 @@
 //!
 //! - A message is queued in the transaction that makes it true, and sent at least once. By its
 //!   id a receiver recognises a repeated message.
-//! - Each receiver gets the messages of a work order in sequence, and likewise those of no
-//!   order. The next one is sent only after this one was delivered, refused permanently, or
-//!   given up after a day. A delay of one order does not delay the others.
+//! - Each receiver gets the messages about one thing in sequence, and likewise those about none.
+//!   The next one is sent only after this one was delivered, refused permanently, or given up
+//!   after a day. A delay of one sequence does not delay the others.
 //! - Pending messages survive a restart, and any server process may send them.
 
 mod delivery;

@@ -1,8 +1,8 @@
 //! Queues in the database, one per receiver.
 //!
 //! Invariants: a receiver's deliveries are numbered in the order in which their transactions
-//! commit. Of each work order only the first pending delivery is due, and likewise of those of
-//! no order. Only the worker that holds the lease sends it, and no other worker serves the same
+//! commit. Of the messages about one thing only the first pending delivery is due, and likewise
+//! of those about none. Only the worker that holds the lease sends it, and no other worker serves the same
 //! receiver meanwhile. A transaction locks webhooks before mail recipients, each in the order
 //! of their ids, so that no two transactions wait for each other.
 
@@ -67,7 +67,7 @@ pub async fn queue(tx: &mut Tx, receiver: Uuid, message: &Message, now: Time) ->
         message.kind.name(),
         message.body.as_str(),
         now,
-        message.order
+        message.about
     )?;
     execute!(
         &mut *tx,

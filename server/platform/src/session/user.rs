@@ -94,8 +94,8 @@ impl Role {
         self == Role::Admin
     }
 
-    /// Checks whether the role allows actions on work orders.
-    pub fn may_act_on_orders(self) -> bool {
+    /// Checks whether the role allows changes to what operators and firms share.
+    pub fn may_change_shared(self) -> bool {
         matches!(self, Role::Admin | Role::Adjuster)
     }
 }

@@ -1,5 +1,6 @@
 //! Registry of the kinds of messages and the webhooks that may subscribe to them.
 
+use crate::http::unknown_name;
 use crate::outbox::Kind;
 use std::sync::Arc;
 
@@ -23,9 +24,13 @@ pub struct DeclaredKind {
     pub audience: Audience,
 }
 
-/// All kinds of messages of the server, in the order in which the API lists them.
+/// Kinds of messages, in the order in which the API lists them: all of the server, or those of
+/// one webhook.
 #[derive(Clone, Debug)]
-pub struct MessageKinds(Arc<[DeclaredKind]>);
+pub struct MessageKinds {
+    kinds: Arc<[DeclaredKind]>,
+    firms_subject: &'static str,
+}
 
 impl DeclaredKind {
     /// Declares a kind of message with its audience.
@@ -34,16 +39,22 @@ impl DeclaredKind {
     }
 }
 
-impl FromIterator<DeclaredKind> for MessageKinds {
-    fn from_iter<I: IntoIterator<Item = DeclaredKind>>(declared: I) -> MessageKinds {
-        MessageKinds(declared.into_iter().collect())
-    }
-}
-
 impl MessageKinds {
+    /// Creates the registry of all kinds. `firms_subject` names what the kinds for firms are
+    /// about, for the refusal of any other.
+    pub fn new(
+        kinds: impl IntoIterator<Item = DeclaredKind>,
+        firms_subject: &'static str,
+    ) -> MessageKinds {
+        MessageKinds {
+            kinds: kinds.into_iter().collect(),
+            firms_subject,
+        }
+    }
+
     /// Returns the names of all kinds.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
-        self.0.iter().map(|declared| declared.kind.name())
+        self.kinds.iter().map(|declared| declared.kind.name())
     }
 
     /// Returns the kinds of the given names that webhooks may subscribe to, in order and without
@@ -51,20 +62,34 @@ impl MessageKinds {
     ///
     /// # Errors
     /// Fails when a name is not that of a kind, with the reason.
-    pub(super) fn find(&self, names: &[String]) -> Result<Vec<DeclaredKind>, String> {
+    pub(super) fn find(&self, names: &[String]) -> Result<MessageKinds, String> {
         let is_unknown = |name: &String| !self.names().any(|known| known == name);
         if let Some(at) = names.iter().position(is_unknown) {
-            let known: Vec<String> = self.names().map(|known| format!("`{known}`")).collect();
             return Err(format!(
-                "kinds[{at}]: unknown variant `{}`, expected one of {}",
-                names[at],
-                known.join(", ")
+                "kinds[{at}]: {}",
+                unknown_name(&names[at], self.names())
             ));
         }
         let is_wanted = |declared: &&DeclaredKind| {
             declared.audience != Audience::Nobody
                 && names.iter().any(|name| name == declared.kind.name())
         };
-        Ok(self.0.iter().filter(is_wanted).copied().collect())
+        let kinds = self.kinds.iter().filter(is_wanted).copied();
+        Ok(MessageKinds::new(kinds, self.firms_subject))
+    }
+
+    /// Checks that a firm may subscribe to each of the kinds.
+    ///
+    /// # Errors
+    /// Fails with the reason when one of them is not for firms.
+    pub(super) fn check_for_firm(&self) -> Result<(), String> {
+        let is_for_firms = |one: &DeclaredKind| one.audience == Audience::OperatorsAndFirms;
+        if self.kinds.iter().all(is_for_firms) {
+            return Ok(());
+        }
+        Err(format!(
+            "a firm can only receive messages about {}",
+            self.firms_subject
+        ))
     }
 }

@@ -176,7 +176,7 @@ async fn test_webhook(
     let message = Message {
         id: message,
         kind: Kind::TEST,
-        order: None,
+        about: None,
         body,
     };
     let queued = outbox::queue_one(&request, id.0, &message, now.into()).await?;

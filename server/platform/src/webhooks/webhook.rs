@@ -1,6 +1,6 @@
 //! Webhooks, as requested and as shown.
 
-use super::kinds::{Audience, DeclaredKind, MessageKinds};
+use super::kinds::MessageKinds;
 use crate::error::{Error, Result};
 use crate::http::is_control;
 use crate::ids::WebhookId;
@@ -39,7 +39,6 @@ pub(super) struct NewWebhook {
     #[schema(max_length = 500, example = "https://example.com/hooks/binnacle")]
     pub(super) url: String,
     /// Kinds of messages to send.
-    #[schema(example = json!(["alert.raised", "alert.cleared"]))]
     #[schema(value_type = Vec<Kind>)]
     pub(super) kinds: Vec<String>,
     /// True if messages are sent; true by default.
@@ -98,7 +97,7 @@ impl NewWebhook {
     ///
     /// # Errors
     /// Fails when a name is not that of a kind.
-    pub(super) fn find_kinds(&self, declared: &MessageKinds) -> Result<Vec<DeclaredKind>> {
+    pub(super) fn find_kinds(&self, declared: &MessageKinds) -> Result<MessageKinds> {
         let invalid = |detail| Error::Invalid {
             field: "body",
             detail,
@@ -112,7 +111,7 @@ impl NewWebhook {
     /// Fails when messages cannot be sent to it, or it subscribes to none.
     pub(super) fn checked(
         mut self,
-        kinds: &[DeclaredKind],
+        kinds: &MessageKinds,
         tenant: Tenant,
         reach: Reach,
     ) -> Result<NewWebhook> {
@@ -126,17 +125,15 @@ impl NewWebhook {
         if let Err(problem) = check_url(&self.url, reach) {
             return invalid("url", problem.to_string());
         }
-        let is_for_firms = |kind: &DeclaredKind| kind.audience == Audience::OperatorsAndFirms;
-        if tenant.firm().is_some() && !kinds.iter().all(is_for_firms) {
-            return invalid(
-                "kinds",
-                "a firm can only receive messages about work orders".to_owned(),
-            );
+        if tenant.firm().is_some()
+            && let Err(problem) = kinds.check_for_firm()
+        {
+            return invalid("kinds", problem);
         }
-        if kinds.is_empty() {
+        self.kinds = kinds.names().map(str::to_owned).collect();
+        if self.kinds.is_empty() {
             return invalid("kinds", "is empty".to_owned());
         }
-        self.kinds = kinds.iter().map(|one| one.kind.name().to_owned()).collect();
         Ok(self)
     }
 }

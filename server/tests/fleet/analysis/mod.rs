@@ -3,7 +3,8 @@
 mod jobs;
 
 use crate::run;
-use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading, wrap_180};
+use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_compass::ship::EarthField;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::program::good;
@@ -18,6 +19,7 @@ on_both!(
     samples_with_equal_times_are_all_listed,
     changed_settings_make_a_new_version_and_reach_the_ship,
     samples_are_paged_filtered_and_exported,
+    course_roll_temperature_and_source_are_exported,
     the_picture_of_samples_agrees_with_their_list,
     coverage_recommends_headings_once_there_is_a_model,
     fit_reads_the_exported_samples_and_weights_them_once,
@@ -322,6 +324,50 @@ async fn samples_are_paged_filtered_and_exported(server: TestServer) {
         let response = ada.get(&nao.path(&format!("/deviation{wrong}"))).await;
         assert_eq!(response.problem(), "invalid", "{wrong}");
     }
+    server.finish().await;
+}
+
+async fn course_roll_temperature_and_source_are_exported(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let mut samples = passage(DAY, 10);
+    samples[9] = Sample {
+        cog: CourseOverGround::new(samples[9].gyro.unwrap().degrees() + 3.0),
+        roll_deg: Some(-1.4),
+        roll_spread_deg: Some(2.5),
+        temperature_c: Some(-7.0),
+        gyro_source: Some(SourceId::from_name("bridge HE THS")),
+        ..samples[9]
+    };
+    nao.put(1, &samples).await.good();
+    server.advance(A_WHILE_S);
+    server.work().await;
+    let csv = ada.get(&nao.path("/samples.csv")).await.text;
+    let rows: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    let columns = [
+        "cog_deg",
+        "roll_deg",
+        "roll_spread_deg",
+        "temperature_c",
+        "gyro_source",
+        "satellite_source",
+    ];
+    assert!(rows[0].ends_with(&columns), "{:?}", rows[0]);
+    assert!(rows[1].ends_with(&[""; 6]), "{:?}", rows[1]);
+    let course = rows[10][19].parse::<f64>().unwrap();
+    let drift = wrap_180(course - rows[10][4].parse::<f64>().unwrap());
+    assert!((drift - 3.0).abs() < 0.6, "{drift}");
+    assert_eq!(rows[10][20..], ["-1.4", "2.5", "-7.0", "41947", ""]);
+    let listed = ada.get(&nao.path("/samples")).await.good();
+    assert_eq!(listed["items"][9]["roll_deg"], -1.4);
+    assert_eq!(listed["items"][9]["gyro_source"], 41_947);
+    assert!(listed["items"][0].get("roll_deg").is_none());
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("exported.csv"), &csv).unwrap();
+    let analysed = good(&run(folder.path(), &["analyse", "exported.csv"]));
+    let analysed: Value = serde_json::from_str(&analysed).unwrap();
+    assert_eq!(analysed["samples"][9]["roll_spread_deg"], 2.5);
+    assert_eq!(analysed["samples"][9]["cog_deg"], course);
     server.finish().await;
 }
 

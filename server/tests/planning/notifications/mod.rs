@@ -20,6 +20,7 @@ on_both!(
     a_person_is_not_notified_of_their_own_action,
     a_withdrawn_offer_is_notified_without_a_reason,
     reading_marks_only_ones_own_notifications,
+    a_list_of_an_unknown_kind_is_refused,
 );
 
 /// Returns the subjects of a person's notifications, oldest first.
@@ -210,5 +211,12 @@ async fn reading_marks_only_ones_own_notifications(server: TestServer) {
     assert_eq!(ada.get(&next).await.good()["items"][0]["id"], first);
     let root = ada.platform_admin(&server).await;
     assert_eq!(root.get("/notifications").await.problem(), "forbidden");
+    server.finish().await;
+}
+
+async fn a_list_of_an_unknown_kind_is_refused(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let refused = ada.get("/notifications?kind=gossip").await;
+    assert_eq!(refused.problem(), "bad-request");
     server.finish().await;
 }

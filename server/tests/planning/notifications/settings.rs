@@ -55,6 +55,7 @@ async fn invalid_settings_are_refused(server: TestServer) {
         json!({ "quiet_hours": { "from": "22:00", "to": "08:00" } }),
         json!({ "digest": { "every": "minute", "at": "07:00" } }),
         json!({ "ways": { "offered": "mail" } }),
+        json!({ "ways": { "gossip": "mail" } }),
         json!({ "ways": { "answered": "pigeon" } }),
         json!({ "volume": 11 }),
     ] {

@@ -7,7 +7,7 @@ use binnacle_server_testing::alerts;
 use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::port_calls::call;
 use binnacle_server_testing::work_orders::{PICTURE, hex};
-use binnacle_server_testing::{ApiResponse, PASSWORD, Person, Ship, TestServer};
+use binnacle_server_testing::{ApiResponse, PASSWORD, Person, Ship, TestServer, sun_by_azimuth};
 use reqwest::{Method, RequestBuilder};
 use ring::signature::{Ed25519KeyPair, KeyPair};
 use serde_json::{Value, json};
@@ -134,7 +134,8 @@ impl Side {
         };
         let mut filled = path.to_owned();
         for name in [
-            "id", "compass", "agent", "stream", "entry", "call", "firm", "key", "delivery", "photo",
+            "id", "compass", "agent", "stream", "entry", "azimuth", "call", "firm", "key",
+            "delivery", "photo",
         ] {
             let key = match (name, first) {
                 ("id", _) => of_id,
@@ -191,6 +192,7 @@ impl Side {
                 json!({ "text": "x" })
             }
             "POST /vessels/{id}/port-calls" => call("NLRTM", 20),
+            "POST /vessels/{id}/azimuths" => sun_by_azimuth(),
             "PUT /vessels/{id}/compasses/{compass}/binnacle" => binnacle(),
             "POST /vessels/{id}/compasses" => json!({ "name": "Aft", "role": "steering" }),
             _ => json!({}),
@@ -206,6 +208,8 @@ async fn create_objects(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'s
     let compass = text(&compasses["items"][0]["id"]);
     let entry = json!({ "kind": "lightning", "from": "2026-11-20T00:00:00Z" });
     let entry = admin.post(&ship.path("/logbook"), &entry).await.good();
+    let azimuth = ship.path("/azimuths");
+    let azimuth = admin.post(&azimuth, &sun_by_azimuth()).await.good();
     let port_call = call("NLRTM", 8);
     let port_call = admin
         .post(&ship.path("/port-calls"), &port_call)
@@ -248,6 +252,7 @@ async fn create_objects(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'s
         ("vessel", vessel),
         ("compass", compass),
         ("entry", text(&entry["id"])),
+        ("azimuth", text(&azimuth["id"])),
         ("call", text(&port_call["id"])),
         ("order", text(&order["id"])),
         ("webhook", text(&webhook["id"])),

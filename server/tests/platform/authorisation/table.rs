@@ -36,6 +36,7 @@ const AGENT: &str = "111111+11";
 
 /// Method and path, as in the document, and their rule.
 pub(super) const TABLE: &[(&str, &str)] = &[
+    ("PUT /agents/azimuths/{id}", AGENT),
     ("POST /agents/enrol", OPEN),
     ("PUT /agents/logbook/{id}", AGENT),
     ("POST /agents/token", AGENT),
@@ -145,6 +146,13 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("GET /vessels/{id}/agents", FLEET_READS),
     ("POST /vessels/{id}/agents", FLEET_WRITES),
     ("DELETE /vessels/{id}/agents/{agent}", FLEET_WRITES),
+    ("GET /vessels/{id}/azimuths", FLEET_READS),
+    ("POST /vessels/{id}/azimuths", FLEET_WRITES),
+    ("GET /vessels/{id}/azimuths/{azimuth}", FLEET_READS),
+    (
+        "POST /vessels/{id}/azimuths/{azimuth}/withdraw",
+        FLEET_WRITES,
+    ),
     ("GET /vessels/{id}/card.csv", FLEET_READS),
     ("GET /vessels/{id}/card.json", FLEET_READS),
     ("GET /vessels/{id}/card.pdf", FLEET_READS),

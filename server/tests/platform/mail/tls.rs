@@ -1,5 +1,6 @@
 //! Mail over TLS, and without it only on the local network.
 
+use binnacle_fleet::alerts;
 use binnacle_platform::config;
 use binnacle_platform::mail::Mailer;
 use binnacle_platform::outbox::{self, Sent};
@@ -34,7 +35,7 @@ fn mailer(url: String, authority: &Path) -> Mailer {
         mail_from: Some("alerts@binnacle.example".to_owned()),
         public_url: Some("https://binnacle.example".to_owned()),
     };
-    let mailer = Mailer::new(&config).unwrap().unwrap();
+    let mailer = Mailer::new(&config, alerts::TOPIC_LIST).unwrap().unwrap();
     mailer.with_patience(Duration::from_secs(10))
 }
 
@@ -119,7 +120,7 @@ async fn without_tls_no_letter_leaves_the_local_network() {
         public_url: Some("https://binnacle.example".to_owned()),
         smtp_ca: None,
     };
-    let (sent, problem) = send(&Mailer::new(&config).unwrap().unwrap()).await;
+    let (sent, problem) = send(&Mailer::new(&config, alerts::TOPIC_LIST).unwrap().unwrap()).await;
     assert_eq!(sent, Some(Sent::Failed));
     assert!(problem.contains("not within the network"), "{problem}");
 }

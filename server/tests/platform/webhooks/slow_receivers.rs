@@ -91,7 +91,7 @@ async fn a_slow_receiver_gets_one_delivery_at_a_time(server: TestServer) {
         let message = Message {
             id: DeliveryId::new(),
             kind: message_kinds::UPDATED,
-            order: Some(OrderId::new()),
+            about: Some(OrderId::new().0),
             body: "{}".to_owned(),
         };
         let now = server.app.clock.now().into();

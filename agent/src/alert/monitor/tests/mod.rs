@@ -3,6 +3,7 @@
 use super::*;
 use crate::config::GyroError;
 use crate::corrected_heading::predict;
+use crate::sampler::Details;
 use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::position::Position;
 
@@ -99,6 +100,9 @@ impl Ship {
                 position,
                 sog_kn: 12.0,
                 rate_of_turn_deg_min: None,
+                details: Details::default(),
+                gyro_source: None,
+                satellite_source: None,
             };
             self.feed(&window);
         }
@@ -187,6 +191,9 @@ fn the_limit_is_the_band_and_the_gyros_error_and_grows_towards_the_poles() {
             position: Position::new(lat, -20.0).unwrap(),
             sog_kn: 12.0,
             rate_of_turn_deg_min: None,
+            details: Details::default(),
+            gyro_source: None,
+            satellite_source: None,
         };
         let now = end_of(window.index).unwrap();
         let apart = ship.monitor.compare(&window, ship.card(), now);

@@ -35,6 +35,9 @@ fn sail_without_gyro(ship: &mut Ship, windows: i64, departure_deg: f64) {
             position: Position::new(43.5, -3.0).unwrap(),
             sog_kn: 12.0,
             rate_of_turn_deg_min: None,
+            details: Details::default(),
+            gyro_source: None,
+            satellite_source: None,
         };
         ship.feed(&window);
     }

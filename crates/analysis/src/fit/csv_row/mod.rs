@@ -3,6 +3,10 @@
 //! The caller reads the file. The required columns and the meaning of a row are decided
 //! here.
 
+mod motion;
+
+pub use motion::Motion;
+
 use super::HeadingReading;
 use crate::gyro_speed_error::gyro_speed_error_deg;
 use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation};
@@ -38,6 +42,20 @@ pub struct CsvRow {
     pub reference_deg: Option<f64>,
     /// `sog_kn`
     pub sog_kn: Option<f64>,
+    /// `cog_deg`: course over ground.
+    pub cog_deg: Option<f64>,
+    /// `rate_of_turn_deg_min`, starboard positive.
+    pub rate_of_turn_deg_min: Option<f64>,
+    /// `roll_deg`: mean roll, starboard down positive.
+    pub roll_deg: Option<f64>,
+    /// `roll_spread_deg`: standard deviation of roll.
+    pub roll_spread_deg: Option<f64>,
+    /// `temperature_c`
+    pub temperature_c: Option<f64>,
+    /// `gyro_source`: number of the instrument that gave the gyro heading.
+    pub gyro_source: Option<f64>,
+    /// `satellite_source`: number of the instrument that gave the satellite-compass heading.
+    pub satellite_source: Option<f64>,
     /// `windows`: settled ten-second windows in the row.
     pub windows: Option<f64>,
     /// `spread_deg`: standard deviation of compass less reference among the windows.
@@ -204,6 +222,8 @@ fn reading(
         gyro = TrueHeading::new(read.degrees() - error);
     }
     let windows = column.at_least_zero("windows", row.windows)?;
+    // A fit uses none of these, but they must be valid.
+    Motion::from_row(row, index)?;
     Ok(HeadingReading {
         time: row.time,
         position,

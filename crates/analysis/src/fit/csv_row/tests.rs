@@ -13,11 +13,11 @@ fn row() -> CsvRow {
     }
 }
 
-fn read(row: CsvRow) -> Result<HeadingReading, CsvRowError> {
-    readings_from_csv(&[row], GyroSpeedError::Corrected).map(|readings| readings[0])
+fn read(row: &CsvRow) -> Result<HeadingReading, CsvRowError> {
+    readings_from_csv(&[*row], GyroSpeedError::Corrected).map(|readings| readings[0])
 }
 
-fn observed(row: CsvRow) -> Option<Observation> {
+fn observed(row: &CsvRow) -> Option<Observation> {
     observe_readings(&[read(row).unwrap()], 0.5)
         .unwrap()
         .observations[0]
@@ -25,7 +25,7 @@ fn observed(row: CsvRow) -> Option<Observation> {
 
 #[test]
 fn deviation_is_reference_less_variation_less_compass() {
-    let observation = observed(row()).unwrap();
+    let observation = observed(&row()).unwrap();
     assert!((observation.deviation.degrees_east() - 6.0).abs() < 1e-9);
 }
 
@@ -39,7 +39,7 @@ fn the_field_comes_from_time_and_place_where_it_is_not_given() {
         satellite_deg: Some(5.0),
         ..CsvRow::default()
     };
-    let observation = observed(at_sea).unwrap();
+    let observation = observed(&at_sea).unwrap();
     assert!((15_000.0..25_000.0).contains(&observation.h_nt));
     assert!(observation.variation.degrees_east() < -3.0);
 }
@@ -167,7 +167,7 @@ fn each_fault_names_its_column() {
         ),
     ];
     for (row, column) in faults {
-        let error = read(row).unwrap_err();
+        let error = read(&row).unwrap_err();
         assert_eq!((error.column(), error.row()), (column, Some(0)), "{error}");
     }
 }
@@ -254,7 +254,7 @@ fn a_number_of_three_hundred_digits_is_quoted_briefly() {
             ..row()
         },
     ] {
-        let complaint = read(wild).unwrap_err().to_string();
+        let complaint = read(&wild).unwrap_err().to_string();
         assert!(
             complaint.contains("1e308") && complaint.len() < 80,
             "{complaint}"

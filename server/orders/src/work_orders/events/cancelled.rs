@@ -1,10 +1,9 @@
 //! Cancellation of an order.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
-use crate::work_orders::message_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::state::State;
-use binnacle_platform::notices::Kind;
+use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +26,10 @@ impl Event for Cancelled {
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
-        Some(Headline::new(Kind::Withdrawn, "the job is cancelled"))
+        Some(Headline::new(
+            notice_kinds::WITHDRAWN,
+            "the job is cancelled",
+        ))
     }
 
     fn quote(&self) -> Option<String> {

@@ -1,11 +1,10 @@
 //! Completion of the adjustment, signed by the adjuster.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
-use crate::work_orders::message_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::signed_record::Completion;
 use crate::work_orders::state::State;
-use binnacle_platform::notices::Kind;
+use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
 
 impl Event for Completion {
@@ -19,6 +18,9 @@ impl Event for Completion {
     }
 
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
-        Some(Headline::new(Kind::Completed, "adjusted and signed"))
+        Some(Headline::new(
+            notice_kinds::COMPLETED,
+            "adjusted and signed",
+        ))
     }
 }

@@ -103,14 +103,14 @@ pub(crate) struct Circumstances {
 #[derive(Clone, Debug)]
 pub(crate) struct Headline {
     /// Kind, by which people subscribe.
-    pub kind: notices::Kind,
+    pub kind: notices::DeclaredKind,
     /// Words between the vessel's name and the port.
     pub words: String,
 }
 
 impl Headline {
     /// A headline in these words.
-    pub(crate) fn new(kind: notices::Kind, words: impl Into<String>) -> Headline {
+    pub(crate) fn new(kind: notices::DeclaredKind, words: impl Into<String>) -> Headline {
         Headline {
             kind,
             words: words.into(),

@@ -1,12 +1,11 @@
 //! Verdict of headings at sea on the prediction.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
-use crate::work_orders::message_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::sea_verification::SeaVerification;
 use crate::work_orders::state::State;
+use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_adjustment::adjust::Verification;
-use binnacle_platform::notices::Kind;
 use binnacle_platform::outbox;
 
 impl Event for SeaVerification {
@@ -44,9 +43,11 @@ impl SeaVerification {
     /// Headline for both sides.
     fn headline(&self) -> Option<Headline> {
         match self.verification {
-            Verification::Passed { .. } => Some(Headline::new(Kind::Verified, "verified at sea")),
+            Verification::Passed { .. } => {
+                Some(Headline::new(notice_kinds::VERIFIED, "verified at sea"))
+            }
             Verification::Alarm { .. } => Some(Headline::new(
-                Kind::VerificationFailed,
+                notice_kinds::VERIFICATION_FAILED,
                 "headings at sea do not confirm the adjustment",
             )),
             Verification::MoreNeeded { .. } => None,

@@ -91,11 +91,8 @@ pub(crate) async fn find_summary(db: &Db, tenant: Tenant, id: OrderId) -> Result
     .ok_or(Error::NotFound("work order"))
 }
 
-/// Finds the vessel of an order, for any tenant.
-pub(crate) fn find_vessel(
-    tx: &mut Tx,
-    order: OrderId,
-) -> BoxFuture<'_, db::Result<Option<VesselId>>> {
+/// Finds the vessel of the order with an id, for any tenant.
+pub(crate) fn find_vessel(tx: &mut Tx, order: Uuid) -> BoxFuture<'_, db::Result<Option<VesselId>>> {
     Box::pin(async move {
         let found = row!(
             in tx,

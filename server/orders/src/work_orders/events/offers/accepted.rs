@@ -1,12 +1,11 @@
 //! Acceptance of an offer by a firm.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
-use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
 use crate::work_orders::summary::Summary;
-use binnacle_platform::notices::Kind;
+use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
 use serde::{Deserialize, Serialize};
 
@@ -41,7 +40,7 @@ impl Event for Accepted {
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
         let firm = &self.0.firm.firm_name;
         Some(Headline::new(
-            Kind::Answered,
+            notice_kinds::ANSWERED,
             format!("{firm} accepts the job"),
         ))
     }

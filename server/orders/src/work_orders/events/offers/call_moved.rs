@@ -1,11 +1,10 @@
 //! Change of the order's port call, announced to one firm.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
-use crate::work_orders::message_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::{Exchange, NamedFirm};
 use crate::work_orders::payload::port_call::{CallChange, CallFit, in_both_zones, zone_of};
-use binnacle_platform::notices::Kind;
+use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
@@ -70,7 +69,7 @@ impl CallMoved {
             (_, CallFit::NeedsNewDay) => "the port call has moved, a new day is needed",
             (_, CallFit::NoCall) => "the port call is now at another port",
         };
-        Headline::new(Kind::CallMoved, words)
+        Headline::new(notice_kinds::CALL_MOVED, words)
     }
 }
 

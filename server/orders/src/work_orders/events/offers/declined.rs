@@ -1,11 +1,10 @@
 //! Refusal of an offer, or return of the order, by a firm.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
-use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
-use binnacle_platform::notices::Kind;
+use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +36,7 @@ impl Event for Declined {
             Some(OfferState::Accepted) => format!("{firm} gives the job back"),
             _ => format!("{firm} declines the job"),
         };
-        Some(Headline::new(Kind::Answered, words))
+        Some(Headline::new(notice_kinds::ANSWERED, words))
     }
 
     fn changes_offers(&self) -> bool {

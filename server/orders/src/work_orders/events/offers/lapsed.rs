@@ -1,11 +1,10 @@
 //! Lapse of an offer, or of a proposal, without an answer.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
-use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
-use binnacle_platform::notices::Kind;
+use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +34,7 @@ impl Event for Lapsed {
             Some(OfferState::Proposed) => format!("no answer in time to the terms of {firm}"),
             _ => format!("no answer in time from {firm}"),
         };
-        Some(Headline::new(Kind::AnswerLate, words))
+        Some(Headline::new(notice_kinds::ANSWER_LATE, words))
     }
 
     fn firm_headline(&self, circumstances: Circumstances) -> Option<Headline> {
@@ -43,7 +42,7 @@ impl Event for Lapsed {
             Some(OfferState::Proposed) => "no answer in time to your terms",
             _ => "you have not answered in time",
         };
-        Some(Headline::new(Kind::AnswerLate, words))
+        Some(Headline::new(notice_kinds::ANSWER_LATE, words))
     }
 
     fn changes_offers(&self) -> bool {

@@ -1,10 +1,9 @@
 //! Message between the operator and a firm.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
-use crate::work_orders::message_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
-use binnacle_platform::notices::Kind;
+use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
 use serde::{Deserialize, Serialize};
 
@@ -28,10 +27,11 @@ impl Event for MessageSent {
         let words = format!("{} writes", self.0.firm.firm_name);
         circumstances
             .by_firm
-            .then(|| Headline::new(Kind::Message, words))
+            .then(|| Headline::new(notice_kinds::MESSAGE, words))
     }
 
     fn firm_headline(&self, circumstances: Circumstances) -> Option<Headline> {
-        (!circumstances.by_firm).then(|| Headline::new(Kind::Message, "message from the operator"))
+        (!circumstances.by_firm)
+            .then(|| Headline::new(notice_kinds::MESSAGE, "message from the operator"))
     }
 }

@@ -1,11 +1,10 @@
 //! Offer sent to a firm.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
-use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
-use binnacle_platform::notices::Kind;
+use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
 use serde::{Deserialize, Serialize};
 
@@ -29,7 +28,10 @@ impl Event for OfferSent {
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
-        Some(Headline::new(Kind::Offered, "a job is offered to you"))
+        Some(Headline::new(
+            notice_kinds::OFFERED,
+            "a job is offered to you",
+        ))
     }
 
     fn changes_offers(&self) -> bool {

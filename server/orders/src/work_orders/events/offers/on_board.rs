@@ -1,9 +1,9 @@
 //! Arrival of the adjuster on board.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
+use crate::work_orders::notice_kinds;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::state::State;
-use binnacle_platform::notices::Kind;
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -29,7 +29,10 @@ impl Event for Boarding {
     }
 
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
-        Some(Headline::new(Kind::OnBoard, "the adjuster is on board"))
+        Some(Headline::new(
+            notice_kinds::ON_BOARD,
+            "the adjuster is on board",
+        ))
     }
 
     fn changes_offers(&self) -> bool {

@@ -1,12 +1,11 @@
 //! Proposal of other terms by a firm, and the operator's answer.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
-use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
 use crate::work_orders::summary::Summary;
-use binnacle_platform::notices::Kind;
+use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
 use serde::{Deserialize, Serialize};
 
@@ -42,7 +41,7 @@ impl Event for Proposed {
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
         let firm = &self.0.firm.firm_name;
         Some(Headline::new(
-            Kind::Answered,
+            notice_kinds::ANSWERED,
             format!("{firm} proposes other terms"),
         ))
     }
@@ -80,7 +79,10 @@ impl Event for ProposalAccepted {
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
-        Some(Headline::new(Kind::Answered, "your terms are accepted"))
+        Some(Headline::new(
+            notice_kinds::ANSWERED,
+            "your terms are accepted",
+        ))
     }
 
     fn changes_offers(&self) -> bool {
@@ -103,7 +105,10 @@ impl Event for ProposalDeclined {
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
-        Some(Headline::new(Kind::Answered, "your terms are declined"))
+        Some(Headline::new(
+            notice_kinds::ANSWERED,
+            "your terms are declined",
+        ))
     }
 
     fn changes_offers(&self) -> bool {

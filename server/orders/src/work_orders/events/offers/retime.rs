@@ -3,12 +3,11 @@
 //! Invariant: the agreed time stands until the firm accepts.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
-use crate::work_orders::message_kinds;
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::Exchange;
 use crate::work_orders::summary::Summary;
-use binnacle_platform::notices::Kind;
+use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
 use serde::{Deserialize, Serialize};
 
@@ -47,7 +46,7 @@ impl Event for RetimeProposed {
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
         Some(Headline::new(
-            Kind::Offered,
+            notice_kinds::OFFERED,
             "another time is proposed to you",
         ))
     }
@@ -80,7 +79,7 @@ impl Event for RetimeAccepted {
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
         let firm = &self.0.firm.firm_name;
         Some(Headline::new(
-            Kind::Answered,
+            notice_kinds::ANSWERED,
             format!("{firm} agrees to another time"),
         ))
     }
@@ -107,12 +106,12 @@ impl Event for RetimeDeclined {
         let words = format!("{} does not agree to another time", self.0.firm.firm_name);
         circumstances
             .by_firm
-            .then(|| Headline::new(Kind::Answered, words))
+            .then(|| Headline::new(notice_kinds::ANSWERED, words))
     }
 
     fn firm_headline(&self, circumstances: Circumstances) -> Option<Headline> {
         let words = "the proposal of another time is withdrawn";
-        (!circumstances.by_firm).then(|| Headline::new(Kind::Answered, words))
+        (!circumstances.by_firm).then(|| Headline::new(notice_kinds::ANSWERED, words))
     }
 
     fn changes_offers(&self) -> bool {
@@ -136,12 +135,12 @@ impl Event for RetimeLapsed {
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
         let firm = &self.0.firm.firm_name;
         let words = format!("no answer in time from {firm} to another time");
-        Some(Headline::new(Kind::AnswerLate, words))
+        Some(Headline::new(notice_kinds::ANSWER_LATE, words))
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
         let words = "you have not answered in time to another time";
-        Some(Headline::new(Kind::AnswerLate, words))
+        Some(Headline::new(notice_kinds::ANSWER_LATE, words))
     }
 
     fn changes_offers(&self) -> bool {

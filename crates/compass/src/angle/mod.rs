@@ -3,7 +3,11 @@
 //! `CompassHeading + Deviation = MagneticHeading` and
 //! `MagneticHeading + Variation = TrueHeading`; nothing else compiles. Headings
 //! are always in [0°, 360°), deviation and variation in (−180°, 180°], east
-//! positive.
+//! positive. Bearings and the errors of instruments follow the same rules.
+
+mod bearing;
+
+pub use bearing::{CompassBearing, CompassError, GyroBearing, GyroError, GyroHeading, TrueBearing};
 
 use crate::number::CompactNumber;
 use serde::{Deserialize, Serialize};
@@ -105,6 +109,8 @@ macro_rules! heading {
     };
 }
 
+use heading;
+
 heading!(
     CompassHeading,
     "Heading read from the magnetic compass, before deviation."
@@ -183,6 +189,8 @@ macro_rules! difference {
         }
     };
 }
+
+use difference;
 
 difference!(
     Deviation,

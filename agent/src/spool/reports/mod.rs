@@ -3,6 +3,8 @@
 //! Invariants: a report keeps the id it was given on board. A change raises its revision and makes
 //! it wait again. A response counts only for the revision that was sent.
 
+pub(super) mod azimuths;
+
 use super::database::Spool;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::logbook::Report;
