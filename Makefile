@@ -82,7 +82,7 @@ study-changes: setup ## Measure how changes are found on simulated fleets: delay
 	$(CARGO) run --locked --release -p binnacle-analysis --example changes_study
 
 study-ships: setup ## Measure a detector on ships with habits and faults of every kind
-	$(CARGO) run --locked --release -p binnacle-analysis --example real_ships_study -- old
+	$(CARGO) run --locked --release -p binnacle-tracking --example real_ships_study -- old
 
 study-losses: setup ## Measure what rounding and thinning cost the estimator
 	$(CARGO) run --locked --release -p binnacle-wire --example losses

@@ -14,7 +14,7 @@ pub fn gyro_speed_error_deg(gyro: TrueHeading, sog_kn: f64, lat_deg: f64) -> f64
 }
 
 /// Returns a gyro's speed error on a northerly heading, degrees.
-pub(crate) fn northerly_speed_error_deg(sog_kn: f64, lat_deg: f64) -> f64 {
+pub fn northerly_speed_error_deg(sog_kn: f64, lat_deg: f64) -> f64 {
     let sine = northerly_sine(sog_kn, lat_deg);
     sine.clamp(-1.0, 1.0).asin().to_degrees()
 }

@@ -5,7 +5,7 @@
 //! arguments, so that an analysis can be repeated to the byte. The conventions are those of
 //! [`binnacle_compass`].
 
-mod gyro_speed_error;
+pub mod gyro_speed_error;
 mod observation;
 mod robust_scale;
 
@@ -15,8 +15,5 @@ pub mod fit;
 pub mod change;
 
 pub mod analyse;
-
-#[allow(missing_docs, dead_code)]
-pub mod tracking;
 
 pub mod advice;

@@ -30,7 +30,7 @@ const REPORTED_SD: f64 = 3.0;
 const USUAL_H_NT: f64 = 24_000.0;
 
 /// Marks the samples taken alongside, and returns each stay.
-pub(crate) fn mark_alongside(readings: &mut [Reading]) -> Vec<Range<usize>> {
+pub fn mark_alongside(readings: &mut [Reading]) -> Vec<Range<usize>> {
     let mut stays = Vec::new();
     let mut from = 0;
     while from < readings.len() {

@@ -5,14 +5,14 @@
 //! nothing, to the last bit. No sample is left out without a reason. Samples that do not
 //! carry a model yield a refusal that names what is missing.
 
-pub(crate) mod berth_stays;
+pub mod berth_stays;
 mod cargo_entries;
 mod changes;
 mod epoch;
 mod epoch_builder;
 mod logbook_rules;
 mod mixture;
-pub(crate) mod reading;
+pub mod reading;
 mod single_heading;
 mod stuck_compass;
 

@@ -17,21 +17,25 @@ const DAY_MICROS: i64 = 86_400_000_000;
 
 /// A sample with what the analysis derives from it.
 #[derive(Clone)]
-pub(crate) struct Reading {
+pub struct Reading {
     /// Gyro heading, corrected for speed error.
-    pub(crate) gyro: Option<TrueHeading>,
-    pub(crate) variation: Option<Variation>,
-    pub(crate) earth: Option<EarthField>,
-    pub(crate) diagnostic: SampleDiagnostic,
+    pub gyro: Option<TrueHeading>,
+    /// Variation there and then; none outside the field model's years.
+    pub variation: Option<Variation>,
+    /// Earth's field there and then; none outside the field model's years.
+    pub earth: Option<EarthField>,
+    /// Diagnosis so far.
+    pub diagnostic: SampleDiagnostic,
 }
 
 impl Reading {
-    pub(crate) fn sample(&self) -> &Sample {
+    /// Returns the sample itself.
+    pub fn sample(&self) -> &Sample {
         &self.diagnostic.sample
     }
 
     /// Returns the place with its field; none outside the field model's years.
-    pub(crate) fn place(&self) -> Option<LastPlace> {
+    pub fn place(&self) -> Option<LastPlace> {
         let (variation, earth) = self.variation.zip(self.earth)?;
         Some(LastPlace {
             time: self.sample().time,
@@ -45,7 +49,7 @@ impl Reading {
 
 /// Returns the distinct samples in order of time, with the field and the reasons against
 /// their use that need no fit.
-pub(crate) fn readings(
+pub fn readings(
     samples: &[Sample],
     logbook: &[LogbookEntry],
     settings: &AnalysisSettings,
@@ -115,7 +119,7 @@ fn corrected_gyro(sample: &Sample, speed_error: GyroSpeedError) -> Option<TrueHe
 }
 
 /// Returns the headings of a reading; none without a reference or a field.
-pub(crate) fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
+pub fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
     let sample = reading.sample();
     let (variation, earth) = reading.variation.zip(reading.earth)?;
     if reading.gyro.is_none() && sample.satellite.is_none() {

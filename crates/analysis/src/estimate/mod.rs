@@ -27,17 +27,15 @@ mod solve;
 mod undated_rows;
 mod whitening;
 
-pub(crate) use noise_process::{
-    COMPASS_SWING_S, SATELLITE_S, SCHULER_DAMPING, SCHULER_PER_S, SLOW_GYRO_S, Transition,
-    VARIATION_NM, swing_over,
-};
-pub(crate) use prior::POPULATION_SD;
-pub use prior::Prior;
+pub use noise_process::{COMPASS_SWING_S, SATELLITE_S, SLOW_GYRO_S, VARIATION_NM, swing_over};
+pub(crate) use noise_process::{SCHULER_DAMPING, SCHULER_PER_S, Transition};
 pub(crate) use prior::unseen_sd_nt;
-pub(crate) use robust_loss::{robust_loss, weight};
+pub use prior::{POPULATION_SD, Prior};
+pub use robust_loss::{robust_loss, weight};
 pub(crate) use rows::{
-    CONSTANT, Direction, LinearisationPoint, Needle, OFFSET_SD_DEG, Row, RowFrame, Scatter,
-    UNKNOWNS, USUAL_REFERENCE_SHARE, Unknowns, WhiteNoise, frames, row,
+    CONSTANT, LinearisationPoint, OFFSET_SD_DEG, Row, RowFrame, UNKNOWNS, USUAL_REFERENCE_SHARE,
+    Unknowns, frames, row,
 };
+pub use rows::{Direction, Needle, Scatter, WhiteNoise};
 pub(crate) use solve::{Options, RoughEstimate, estimate, estimate_roughly};
 pub(crate) use undated_rows::are_times_plausible;

@@ -19,13 +19,13 @@ pub(crate) const SCHULER_PER_S: f64 = TAU / (84.4 * 60.0);
 /// Damping of the swing by a gyro's settling, as a part of the critical one.
 pub(crate) const SCHULER_DAMPING: f64 = 0.2;
 /// Correlation time of the gyro's settling point.
-pub(crate) const SLOW_GYRO_S: f64 = 3.0 * 86_400.0;
+pub const SLOW_GYRO_S: f64 = 3.0 * 86_400.0;
 /// Correlation time of the compass's swing about a wrong mean after a disturbance.
-pub(crate) const COMPASS_SWING_S: f64 = 20.0 * 60.0;
+pub const COMPASS_SWING_S: f64 = 20.0 * 60.0;
 /// Correlation time of a satellite compass's reflections.
-pub(crate) const SATELLITE_S: f64 = 30.0 * 60.0;
+pub const SATELLITE_S: f64 = 30.0 * 60.0;
 /// Correlation distance of the crust's own field.
-pub(crate) const VARIATION_NM: f64 = 60.0;
+pub const VARIATION_NM: f64 = 60.0;
 /// Time for which the drift level holds.
 const DRIFT_S: f64 = 30.0 * 86_400.0;
 /// Greatest time since a turn when the vessel has settled again.
@@ -109,7 +109,7 @@ impl TimeStep {
 }
 
 /// Returns the damped swing and its rate (in units of the swing) after `seconds`.
-pub(crate) fn swing_over(seconds: f64) -> [[f64; 2]; 2] {
+pub fn swing_over(seconds: f64) -> [[f64; 2]; 2] {
     let phase = SCHULER_PER_S * seconds;
     let damped = (1.0 - SCHULER_DAMPING * SCHULER_DAMPING).sqrt();
     let shrink = (-SCHULER_DAMPING * phase).exp();

@@ -5,8 +5,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// Standard deviations over ships of bx, χ13, by, χ23, χ11−χ22, χ12 and χ21, all over λ;
 /// fields in nT. Of the size of the ship in Basterretxea-Iribar, Sotés & Uriarte 2016.
-pub(crate) const POPULATION_SD: [f64; PARAMETERS] =
-    [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
+pub const POPULATION_SD: [f64; PARAMETERS] = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
 
 /// Standard deviation of the alignment: most compasses are bolted down to half a degree.
 /// The prior's tail allows for a few degrees.

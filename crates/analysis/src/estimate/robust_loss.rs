@@ -10,7 +10,7 @@ const GROSS_ERROR_SD: f64 = 6.0;
 /// Returns the weight of an innovation by its square in standard deviations: 1 up to
 /// [`FULL_WEIGHT_SD`], then falling with the square, so that a wilder innovation moves the state
 /// less.
-pub(crate) fn weight(z_squared: f64) -> f64 {
+pub fn weight(z_squared: f64) -> f64 {
     let bound = FULL_WEIGHT_SD * FULL_WEIGHT_SD;
     if z_squared <= bound {
         1.0
@@ -28,7 +28,7 @@ pub(crate) fn batch_weight(z_squared: f64) -> f64 {
 
 /// Returns the loss whose slope is twice the weighted innovation, up to its value at
 /// [`GROSS_ERROR_SD`]: the levels describe the other rows, however wild a few are.
-pub(crate) fn robust_loss(z_squared: f64) -> f64 {
+pub fn robust_loss(z_squared: f64) -> f64 {
     let square = z_squared.min(GROSS_ERROR_SD * GROSS_ERROR_SD);
     let bound = FULL_WEIGHT_SD * FULL_WEIGHT_SD;
     if square <= bound {

@@ -11,8 +11,11 @@ const NEEDED_SECTORS: u32 = 6;
 /// Widest gap: beyond a wider one the deviation would be the prior's alone.
 const ALLOWED_GAP_DEG: f64 = 240.0;
 
-/// Fails for observations on too few headings, with the missing sectors.
-pub(crate) fn check_headings(rows: &[Observation]) -> Result<(), FitError> {
+/// Checks that observations lie on enough headings for a model.
+///
+/// # Errors
+/// [`FitError::TooFewHeadings`] with the missing sectors.
+pub fn check_headings(rows: &[Observation]) -> Result<(), FitError> {
     // Least and greatest heading in each degree: all gaps that matter lie between these.
     let mut ends: [Option<(f64, f64)>; 360] = [None; 360];
     for heading in rows.iter().map(|o| o.compass.degrees()) {

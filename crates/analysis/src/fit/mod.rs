@@ -3,7 +3,7 @@
 //! ([`fit_robust`]).
 
 mod csv_row;
-pub(crate) mod heading_check;
+mod heading_check;
 mod normal_equations;
 mod ols;
 mod paper;
@@ -15,6 +15,7 @@ mod time_outliers;
 pub use crate::gyro_speed_error::gyro_speed_error_deg;
 pub use crate::observation::Observation;
 pub use csv_row::{CsvRow, CsvRowError, Motion, check_columns, readings_from_csv};
+pub use heading_check::check_headings;
 pub use ols::fit_ols;
 pub use paper::fit_paper;
 pub use reference::{HeadingReading, ObservedReadings, observe_readings};

@@ -2,21 +2,23 @@
 
 /// A direction.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Direction {
-    pub(crate) sin: f64,
-    pub(crate) cos: f64,
+pub struct Direction {
+    /// Its sine: the part towards east.
+    pub sin: f64,
+    /// Its cosine: the part towards north.
+    pub cos: f64,
 }
 
 impl Direction {
     /// Makes the direction of an angle.
-    pub(crate) fn from_radians(radians: f64) -> Direction {
+    pub fn from_radians(radians: f64) -> Direction {
         let (sin, cos) = radians.sin_cos();
         Direction { sin, cos }
     }
 
     /// Makes the direction of an angle of at most a tenth, by the first terms of the
     /// series.
-    pub(crate) fn from_small_radians(radians: f64) -> Direction {
+    pub fn from_small_radians(radians: f64) -> Direction {
         let x = radians * radians;
         let sin = 1.0 - x / 6.0 * (1.0 - x / 20.0 * (1.0 - x / 42.0 * (1.0 - x / 72.0)));
         let cos = 1.0 - x / 2.0 * (1.0 - x / 12.0 * (1.0 - x / 30.0 * (1.0 - x / 56.0)));
@@ -27,7 +29,7 @@ impl Direction {
     }
 
     /// Returns the direction turned clockwise by another.
-    pub(crate) fn rotated_by(self, by: Direction) -> Direction {
+    pub fn rotated_by(self, by: Direction) -> Direction {
         Direction {
             sin: self.sin * by.cos + self.cos * by.sin,
             cos: self.cos * by.cos - self.sin * by.sin,

@@ -5,10 +5,10 @@ mod needle;
 mod row;
 mod scatter;
 
-pub(crate) use direction::Direction;
-pub(crate) use needle::Needle;
+pub use direction::Direction;
+pub use needle::Needle;
 pub(crate) use row::{
     CONSTANT, LinearisationPoint, OFFSET_SD_DEG, Row, RowFrame, UNKNOWNS, USUAL_REFERENCE_SHARE,
     Unknowns, frames, plain_residual, row, to_physical_units,
 };
-pub(crate) use scatter::{Scatter, WhiteNoise};
+pub use scatter::{Scatter, WhiteNoise};

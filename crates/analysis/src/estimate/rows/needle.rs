@@ -7,7 +7,7 @@ use binnacle_compass::ship::{EarthField, PARAMETERS};
 /// Horizontal field at the compass, over λ, on one magnetic heading, in a form that never
 /// divides by zero.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Needle {
+pub struct Needle {
     earth: [f64; 3],
     /// Sine and cosine of the compass heading over the strength, per nT.
     direction: [f64; 2],
@@ -19,7 +19,7 @@ pub(crate) struct Needle {
 
 impl Needle {
     /// Returns the needle on a magnetic heading.
-    pub(crate) fn at(p: &Parameters, heading: Direction, field: EarthField) -> Needle {
+    pub fn at(p: &Parameters, heading: Direction, field: EarthField) -> Needle {
         let Direction { sin, cos } = heading;
         let (hx, hy) = (field.h_nt * cos, -field.h_nt * sin);
         let earth = [hx, hy, field.z_nt];
@@ -43,18 +43,18 @@ impl Needle {
 
     /// Returns magnetic heading less compass heading (docs/science.md, eq. 5), radians in
     /// (−π, π].
-    pub(crate) fn deviation_rad(&self) -> f64 {
+    pub fn deviation_rad(&self) -> f64 {
         self.across.atan2(self.along)
     }
 
     /// Returns the slope of compass heading by magnetic heading: 1 without deviation.
-    pub(crate) fn compass_per_magnetic(&self) -> f64 {
+    pub fn compass_per_magnetic(&self) -> f64 {
         self.compass_per_magnetic
     }
 
     /// Returns the derivative of deviation, in radians, by each parameter at fixed magnetic
     /// heading (docs/science.md, eq. 9): from dζ = −(sin ζ dux + cos ζ duy)/|u|.
-    pub(crate) fn gradient(&self) -> [f64; PARAMETERS] {
+    pub fn gradient(&self) -> [f64; PARAMETERS] {
         let [hx, hy, z] = self.earth;
         let [s, c] = self.direction;
         [s, z * s, c, z * c, (hx * s - hy * c) / 2.0, hy * s, hx * c]

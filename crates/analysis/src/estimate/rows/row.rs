@@ -93,7 +93,7 @@ pub(crate) fn frames(observations: &[Observation]) -> Vec<RowFrame> {
         .any(|o| o.gyro_less_satellite_deg.is_some());
     let mut earlier: Option<&Observation> = None;
     let mut step = TimeStep::new(0.0);
-    let mut scatter = Scatter::new();
+    let mut scatter = Scatter::default();
     let mut frames = Vec::with_capacity(observations.len());
     for observation in observations {
         let transition = match earlier {

@@ -28,22 +28,22 @@ const LARGEST_DEG: f64 = 3.0;
 
 /// White variance of a row, by the vessel's level.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct WhiteNoise {
+pub struct WhiteNoise {
     /// Factor on the level's square: 1 for a full row of unit weight at nominal scatter.
-    pub(crate) factor: f64,
+    pub factor: f64,
     /// Variance that the scatter alone explains, degrees squared.
-    pub(crate) scatter: f64,
+    pub scatter: f64,
 }
 
 impl WhiteNoise {
     /// Returns the variance at a squared level.
-    pub(crate) fn variance(self, level_squared: f64) -> f64 {
+    pub fn variance(self, level_squared: f64) -> f64 {
         level_squared * self.factor + self.scatter
     }
 
     /// Returns the white noise of the references' difference, in which the card has no
     /// part.
-    pub(crate) fn of_difference(o: &Observation) -> WhiteNoise {
+    pub fn of_difference(o: &Observation) -> WhiteNoise {
         WhiteNoise {
             factor: (1.0 + FULL_WINDOWS / windows(o)) / (2.0 * o.weight),
             scatter: 0.0,
@@ -53,22 +53,25 @@ impl WhiteNoise {
 
 /// Scatter of a vessel's windows so far.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Scatter {
+pub struct Scatter {
     /// Sum of squares over windows, degrees squared.
     squares: f64,
     windows: f64,
 }
 
-impl Scatter {
-    pub(crate) fn new() -> Scatter {
+impl Default for Scatter {
+    /// Returns the scatter of a vessel that nothing is known of.
+    fn default() -> Scatter {
         Scatter {
             squares: STARTING_WINDOWS * NOMINAL_DEG * NOMINAL_DEG,
             windows: STARTING_WINDOWS,
         }
     }
+}
 
+impl Scatter {
     /// Returns the white noise of a row's deviation, and adds the row.
-    pub(crate) fn white(&mut self, o: &Observation) -> WhiteNoise {
+    pub fn white(&mut self, o: &Observation) -> WhiteNoise {
         let windows = windows(o);
         let usual = self.squares / self.windows;
         let (square, shown) = match o.spread_deg {
@@ -129,7 +132,7 @@ mod tests {
     }
 
     fn factor(windows: u16, spread_deg: Option<f64>) -> f64 {
-        Scatter::new().white(&row(windows, spread_deg)).factor
+        Scatter::default().white(&row(windows, spread_deg)).factor
     }
 
     #[test]
@@ -153,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_row_that_does_not_say_has_the_usual_scatter_of_the_ship_so_far() {
-        let mut scatter = Scatter::new();
+        let mut scatter = Scatter::default();
         for _ in 0..500 {
             scatter.white(&row(60, Some(1.0)));
         }

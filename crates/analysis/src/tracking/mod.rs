@@ -1,9 +1,0 @@
-//! Tracking of a ship's magnetism by weighed hypotheses (multiple-hypothesis tracking).
-
-mod hypotheses;
-mod report;
-mod state_space;
-pub mod study;
-mod tracker;
-
-pub use report::analyse;

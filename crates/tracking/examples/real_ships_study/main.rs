@@ -1,0 +1,68 @@
+//! Study of a detector on ships that are not as it supposes: sound ships with habits,
+//! compasses whose zero is off, steps, faults, and the causes given for them.
+//!
+//! `make study-ships`, or `cargo run --release -p binnacle-tracking --example
+//! real_ships_study -- old --ships 6 --rows plain,retention_1`. Without `--rows` all rows are run, in the order of `--list`;
+//! each prints one line as soon as it is complete. The same seeds make the same voyages for
+//! every detector, and for every habit.
+
+#![allow(clippy::unwrap_used)] // a study, run by hand
+
+#[allow(dead_code)]
+#[path = "../../../analysis/tests/voyages/mod.rs"]
+mod voyages;
+
+mod arguments;
+mod causes;
+mod detector;
+mod efficiency;
+mod look;
+mod score;
+mod sound;
+mod starting;
+mod steps;
+mod table;
+
+use arguments::Arguments;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::parse(std::env::args().skip(1)) {
+        Ok(arguments) => arguments,
+        Err(problem) => {
+            println!("{problem}\n{}", arguments::USAGE);
+            return ExitCode::FAILURE;
+        }
+    };
+    if arguments.list {
+        for name in names() {
+            println!("{name}");
+        }
+        return ExitCode::SUCCESS;
+    }
+    if let Some(unknown) = arguments.unknown(&names()) {
+        println!("no row {unknown}: --list has the names");
+        return ExitCode::FAILURE;
+    }
+    sound::run(&arguments);
+    starting::run(&arguments);
+    steps::run(&arguments);
+    causes::run(&arguments);
+    efficiency::run(&arguments);
+    ExitCode::SUCCESS
+}
+
+/// Returns the names of all rows, in their order.
+fn names() -> Vec<&'static str> {
+    let sound = sound::ROWS.iter().map(|row| row.name);
+    let starting = starting::ROWS.iter().map(|row| row.name);
+    let steps = steps::ROWS.iter().map(|row| row.name);
+    let causes = causes::ROWS.iter().map(|row| row.name);
+    let efficiency = efficiency::ROWS.iter().map(|row| row.name);
+    sound
+        .chain(starting)
+        .chain(steps)
+        .chain(causes)
+        .chain(efficiency)
+        .collect()
+}

@@ -1,0 +1,317 @@
+//! One account of what happened: a filter, and the events that it supposes.
+
+use super::kinds::{Ending, Kind};
+use crate::state_space::filter::{Filter, Innovation, Marginal};
+use crate::state_space::levels::Levels;
+use crate::state_space::row::Row;
+use crate::state_space::scalar::{Scalar, Silent, deviation, difference};
+use crate::state_space::ship_state::ShipState;
+use crate::state_space::states::{ALIGNMENT, BX, BY, GYRO, STATES};
+use crate::state_space::transition::Transition;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::logbook::LogbookKind;
+use binnacle_compass::ship::PARAMETERS;
+use binnacle_compass::time::Timestamp;
+
+/// Growth of a drifting ship's (bx, by), nT squared a second: 2 µT in thirty days.
+const DRIFTING_NT2_PER_S: f64 = 2000.0 * 2000.0 / (30.0 * 86_400.0);
+/// Growth of a ramping gyro's error, degrees squared a second: a degree in a day.
+const RAMP_DEG2_PER_S: f64 = 1.0 / 86_400.0;
+/// Memory and standard deviation of a storm's variation, where H is usual.
+const STORM_S: f64 = 3600.0;
+const STORM_DEG: f64 = 1.2;
+
+/// Change of the induced parameters by work that leaves them, over the population.
+const WORKED_INDUCED: f64 = 0.4;
+/// Change of the alignment by work on the compass, degrees.
+const REALIGNED_DEG: f64 = 2.0;
+/// Probability of a wild reading.
+const WILD: f64 = 0.004;
+/// Standard deviation of a row's share of a jump, degrees.
+const AMID_DEG: f64 = 3.0;
+/// Standard deviation of a stuck instrument's readings, degrees.
+const HELD_DEG: f64 = 0.3;
+/// Greatest loss of a row.
+const WORST_LOSS: f64 = 18.0;
+/// Ratio of a prediction's variance to the reading's from which the reading teaches much.
+const TEACHES: f64 = 20.0;
+
+/// Supposed event.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Event {
+    pub(crate) kind: Kind,
+    /// Time of the last row before it.
+    pub(crate) from: Timestamp,
+    /// First row after its end.
+    pub(crate) until: Option<Timestamp>,
+    /// States before it, for its end.
+    pub(crate) before: Option<Box<Marginal>>,
+    /// Ship before it, and before its end.
+    pub(crate) ship_before: Box<ShipState>,
+    pub(crate) ship_at_end: Option<Box<ShipState>>,
+    /// True if the ship was in port meanwhile.
+    pub(crate) in_port: bool,
+    /// Heading at which an instrument stands, degrees.
+    pub(crate) held_deg: Option<f64>,
+}
+
+/// Circumstances in which an event begins or ends.
+#[derive(Clone, Debug)]
+pub(crate) struct Begin {
+    /// Time of the last row before.
+    pub(crate) time: Timestamp,
+    /// Ship until then.
+    pub(crate) ship: ShipState,
+    /// Last row before.
+    pub(crate) row: Row,
+    /// True if the ship was in port meanwhile.
+    pub(crate) in_port: bool,
+}
+
+/// Account of what happened.
+#[derive(Clone, Debug)]
+pub(crate) struct Hypothesis {
+    pub(crate) filter: Filter,
+    pub(crate) events: Vec<Event>,
+    /// Logarithm of the prior probability of its events.
+    pub(crate) log_prior: f64,
+    /// Number of the starting guess that it descends from.
+    pub(crate) start: usize,
+    /// Row whose reading it holds to be wild, the last one.
+    pub(crate) wild: Option<usize>,
+    /// True until the row is read in which the last event began or ended.
+    pub(crate) is_amid: bool,
+}
+
+/// Innovations of a row, with the loads that they had.
+#[derive(Clone, Debug)]
+pub(crate) struct Read {
+    pub(crate) difference: Option<Innovation>,
+    pub(crate) deviation: Innovation,
+    pub(crate) load: Scalar,
+}
+
+impl Read {
+    /// Returns the loss of the row: one wild instrument spoils all that it is compared with.
+    fn loss(&self) -> f64 {
+        let loss = self.deviation.loss() + self.difference.map_or(0.0, Innovation::loss);
+        loss.min(WORST_LOSS)
+    }
+
+    /// Returns true if the row says more than was known before: then a wild reading would do
+    /// harm that later ones take long to mend.
+    pub(crate) fn teaches(&self) -> bool {
+        self.deviation.variance > TEACHES * self.load.variance
+    }
+}
+
+impl Hypothesis {
+    /// Returns true if what a row teaches now is the ship and not some passing error.
+    pub(crate) fn learns_the_ship(&self) -> bool {
+        let passing = |kind: Kind| kind.passes_by() || kind == Kind::GyroSettling;
+        !self.silent().compass && !self.lasting().any(passing)
+    }
+
+    /// Returns the logarithm of its weight, to be compared with others' of the same rows.
+    pub(crate) fn log_weight(&self) -> f64 {
+        self.log_prior + self.filter.log_likelihood
+    }
+
+    /// Returns the kinds of its events that last.
+    pub(crate) fn lasting(&self) -> impl Iterator<Item = Kind> {
+        let lasting = self.events.iter().filter(|event| event.until.is_none());
+        lasting.map(|event| event.kind)
+    }
+
+    pub(crate) fn has(&self, kind: Kind) -> bool {
+        self.lasting().any(|lasting| lasting == kind)
+    }
+
+    fn silent(&self) -> Silent {
+        Silent {
+            compass: self.has(Kind::StuckCard),
+            gyro: self.has(Kind::StuckGyro),
+            satellite: self.has(Kind::StuckSatellite),
+        }
+    }
+
+    /// Reads the next row.
+    pub(crate) fn read(&mut self, row: &Row, levels: &Levels, usual: &Transition) -> Read {
+        self.read_with(row, levels, usual, self.silent())
+    }
+
+    /// Returns the hypothesis after a row whose compass reading is wild.
+    pub(crate) fn after_wild(
+        &self,
+        number: usize,
+        row: &Row,
+        levels: &Levels,
+        usual: &Transition,
+    ) -> Hypothesis {
+        let mut next = self.clone();
+        let silent = Silent {
+            compass: true,
+            ..self.silent()
+        };
+        next.read_with(row, levels, usual, silent);
+        next.log_prior += WILD.ln();
+        next.wild = Some(number);
+        next
+    }
+
+    fn read_with(
+        &mut self,
+        row: &Row,
+        levels: &Levels,
+        usual: &Transition,
+        silent: Silent,
+    ) -> Read {
+        self.survive(row.seconds);
+        let mut own;
+        let transition = if self.events.iter().all(|event| event.until.is_some()) {
+            usual
+        } else {
+            own = usual.clone();
+            self.adjust(&mut own, row);
+            &own
+        };
+        self.filter.advance(transition);
+        // Part of the row in which something jumps lies before, and part after.
+        let amid = if std::mem::take(&mut self.is_amid) {
+            AMID_DEG * AMID_DEG
+        } else {
+            0.0
+        };
+        let by_difference = difference(row, &self.filter.mean, levels, silent)
+            .filter(|_| !(silent.gyro || silent.satellite))
+            .map(|mut scalar| {
+                scalar.variance += amid;
+                self.filter.update(&scalar)
+            });
+        let mut load = deviation(row, &self.filter.mean, levels, silent);
+        load.variance += amid;
+        let read = Read {
+            difference: by_difference,
+            deviation: if self.holds(row) {
+                self.filter.innovation(&load)
+            } else {
+                self.filter.update(&load)
+            },
+            load,
+        };
+        self.filter.log_likelihood -= 0.5 * read.loss();
+        self.read_held(row);
+        read
+    }
+
+    /// Returns true if an instrument is stuck without which the row shows no deviation.
+    fn holds(&self, row: &Row) -> bool {
+        let is_alone = row.gyro_deg.is_none() || row.satellite_deg.is_none();
+        self.has(Kind::StuckCard)
+            || (is_alone && (self.has(Kind::StuckGyro) || self.has(Kind::StuckSatellite)))
+    }
+
+    /// Reads what stuck instruments show: the same as before.
+    fn read_held(&mut self, row: &Row) {
+        let lasting = self.events.iter().filter(|event| event.until.is_none());
+        let held = lasting.filter_map(|event| {
+            let shown = row.shown_deg(event.kind)?;
+            Some(wrap_180(shown - event.held_deg?))
+        });
+        let losses: f64 = held
+            .map(|value| {
+                let variance = HELD_DEG * HELD_DEG;
+                Innovation { value, variance }.loss() + variance.ln()
+            })
+            .sum();
+        self.filter.log_likelihood -= 0.5 * losses;
+    }
+
+    /// Counts how improbable it is that its lasting events have lasted as long.
+    fn survive(&mut self, seconds: f64) {
+        for event in self.events.iter().filter(|event| event.until.is_none()) {
+            if let Ending::After(mean_s) = event.kind.row().ending {
+                self.log_prior -= seconds / mean_s;
+            }
+        }
+    }
+
+    fn adjust(&self, transition: &mut Transition, row: &Row) {
+        for kind in self.lasting() {
+            match kind {
+                Kind::ShipDrift => transition.drift(DRIFTING_NT2_PER_S * row.seconds),
+                Kind::GyroRamp => transition.added[GYRO] += RAMP_DEG2_PER_S * row.seconds,
+                Kind::Storm => transition.disturb(row.seconds, STORM_S, STORM_DEG),
+                Kind::Anomaly => transition.pass_anomaly(row.seconds),
+                _ => {}
+            }
+        }
+    }
+
+    /// Returns the hypothesis with one more event.
+    pub(crate) fn with_event(&self, kind: Kind, begin: &Begin, log_prior: f64) -> Hypothesis {
+        let mut next = self.clone();
+        let states = kind.returning_states();
+        let before =
+            (!states.is_empty()).then(|| Box::new(Marginal::from_filter(&self.filter, &states)));
+        for jump in kind.row().jumps {
+            next.filter.covariance[jump.state][jump.state] += jump.sd * jump.sd;
+        }
+        next.events.push(Event {
+            kind,
+            from: begin.time,
+            until: None,
+            before,
+            ship_before: Box::new(begin.ship.clone()),
+            ship_at_end: None,
+            in_port: begin.in_port,
+            held_deg: begin.row.shown_deg(kind),
+        });
+        next.is_amid = !kind.row().jumps.is_empty();
+        next.log_prior += log_prior;
+        next
+    }
+
+    /// Forgets what work on ship or compass undid.
+    pub(crate) fn renew(&mut self, kind: LogbookKind) {
+        let mut free = [WORKED_INDUCED; PARAMETERS];
+        (free[BX], free[BY]) = (1.0, 1.0);
+        if kind.preserves_soft_iron() {
+            for (j, sd) in free.iter().enumerate() {
+                self.filter.covariance[j][j] += sd * sd;
+            }
+        } else {
+            let states: Vec<usize> = (0..PARAMETERS).collect();
+            let anew = Filter::new([0.0; STATES], &[1.0; STATES]);
+            self.filter.restore(&Marginal::from_filter(&anew, &states));
+            self.filter.covariance[ALIGNMENT][ALIGNMENT] += REALIGNED_DEG * REALIGNED_DEG;
+        }
+    }
+
+    /// Returns the hypotheses in which one of the lasting events ends now.
+    pub(crate) fn endings(&self, begin: &Begin, spacing_s: f64) -> Vec<Hypothesis> {
+        let lasting = self.events.iter().enumerate();
+        let lasting = lasting.filter(|(_, event)| event.until.is_none());
+        let ended = lasting.filter_map(|(i, event)| {
+            let probability = match event.kind.row().ending {
+                Ending::After(mean_s) => spacing_s / mean_s,
+                Ending::InPort(share) if begin.in_port => share,
+                _ => return None,
+            };
+            Some(self.with_end(i, begin, probability.min(0.5).ln()))
+        });
+        ended.collect()
+    }
+
+    pub(crate) fn with_end(&self, event: usize, begin: &Begin, log_prior: f64) -> Hypothesis {
+        let mut next = self.clone();
+        next.events[event].until = Some(begin.time);
+        next.events[event].ship_at_end = Some(Box::new(begin.ship.clone()));
+        if let Some(before) = next.events[event].before.take() {
+            next.filter.restore(&before);
+            next.is_amid = !next.events[event].kind.passes_by();
+        }
+        next.log_prior += log_prior;
+        next
+    }
+}

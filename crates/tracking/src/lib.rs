@@ -1,0 +1,8 @@
+//! Tracking of a ship's magnetism by weighed hypotheses (multiple-hypothesis tracking).
+
+mod hypotheses;
+mod report;
+mod state_space;
+mod weighing;
+
+pub use report::analyse;

@@ -1,0 +1,6 @@
+//! Analysis of a compass as epochs, models and changes.
+
+mod analysis;
+mod detected_changes;
+
+pub use analysis::analyse;

@@ -1,0 +1,183 @@
+//! Kalman filter over all states.
+
+use super::scalar::Scalar;
+use super::states::{STATES, dot};
+use super::transition::{Pair, Transition};
+use binnacle_analysis::estimate::{robust_loss, weight};
+
+/// Mean and covariance of the states, and the log likelihood of what was read.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Filter {
+    pub(crate) mean: [f64; STATES],
+    pub(crate) covariance: [[f64; STATES]; STATES],
+    pub(crate) log_likelihood: f64,
+}
+
+/// Outcome of one reading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Innovation {
+    /// Reading less its prediction.
+    pub(crate) value: f64,
+    /// Variance of the prediction, the reading's noise in it.
+    pub(crate) variance: f64,
+}
+
+impl Innovation {
+    /// Returns the loss of a reading with tails as heavy as instruments have.
+    pub(crate) fn loss(self) -> f64 {
+        robust_loss(self.z_squared())
+    }
+
+    /// Returns the square in standard deviations.
+    pub(crate) fn z_squared(self) -> f64 {
+        self.value * self.value / self.variance
+    }
+}
+
+impl Filter {
+    /// Makes a filter of independent states from means and standard deviations.
+    pub(crate) fn new(mean: [f64; STATES], sd: &[f64; STATES]) -> Filter {
+        let mut covariance = [[0.0; STATES]; STATES];
+        for (i, sd) in sd.iter().enumerate() {
+            covariance[i][i] = sd * sd;
+        }
+        Filter {
+            mean,
+            covariance,
+            log_likelihood: 0.0,
+        }
+    }
+
+    /// Moves on in time.
+    pub(crate) fn advance(&mut self, t: &Transition) {
+        for (x, keep) in self.mean.iter_mut().zip(&t.keep) {
+            *x *= keep;
+        }
+        for (row, keep) in self.covariance.iter_mut().zip(&t.keep) {
+            for (x, other) in row.iter_mut().zip(&t.keep) {
+                *x *= keep * other;
+            }
+        }
+        for pair in &t.pairs {
+            self.turn(pair);
+        }
+        for (i, variance) in t.added.iter().enumerate() {
+            self.covariance[i][i] += variance;
+        }
+    }
+
+    /// Moves a state and its rate by their own transition.
+    fn turn(&mut self, pair: &Pair) {
+        let [[a, b], [c, d]] = pair.matrix;
+        let turned = |value: f64, rate: f64| (a * value + b * rate, c * value + d * rate);
+        let [s, r] = [pair.state, pair.state + 1];
+        (self.mean[s], self.mean[r]) = turned(self.mean[s], self.mean[r]);
+        for row in &mut self.covariance {
+            (row[s], row[r]) = turned(row[s], row[r]);
+        }
+        for j in 0..STATES {
+            let (value, rate) = turned(self.covariance[s][j], self.covariance[r][j]);
+            self.covariance[s][j] = value;
+            self.covariance[r][j] = rate;
+        }
+        let [[ss, sr], [_, rr]] = pair.added;
+        self.covariance[s][s] += ss;
+        self.covariance[s][r] += sr;
+        self.covariance[r][s] += sr;
+        self.covariance[r][r] += rr;
+    }
+
+    /// Returns the product of the covariance with a load.
+    pub(crate) fn spread(&self, load: &[f64; STATES]) -> [f64; STATES] {
+        let mut product = [0.0; STATES];
+        for (row, x) in self.covariance.iter().zip(load) {
+            if *x == 0.0 {
+                continue;
+            }
+            for (sum, c) in product.iter_mut().zip(row) {
+                *sum += c * x;
+            }
+        }
+        product
+    }
+
+    /// Returns what a scalar is off, without reading it.
+    pub(crate) fn innovation(&self, scalar: &Scalar) -> Innovation {
+        Innovation {
+            value: scalar.innovation,
+            variance: scalar.variance + dot(&scalar.load, &self.spread(&scalar.load)),
+        }
+    }
+
+    /// Reads a scalar. Its loss is left to the caller, who knows what else the row said.
+    pub(crate) fn update(&mut self, scalar: &Scalar) -> Innovation {
+        let gain = self.spread(&scalar.load);
+        let value = scalar.innovation;
+        let variance = scalar.variance + dot(&scalar.load, &gain);
+        let innovation = Innovation { value, variance };
+        let z_squared = innovation.z_squared();
+        self.log_likelihood -= 0.5 * variance.ln();
+        let per_raised = weight(z_squared) / variance;
+        for (mean, gain) in self.mean.iter_mut().zip(&gain) {
+            *mean += gain * (per_raised * value);
+        }
+        for (row, x) in self.covariance.iter_mut().zip(&gain) {
+            let step = x * per_raised;
+            for (c, gain) in row.iter_mut().zip(&gain) {
+                *c -= step * gain;
+            }
+        }
+        innovation
+    }
+
+    /// Returns the filter whose mean and covariance are those of a mixture of both, `share`
+    /// being the other's.
+    pub(crate) fn mixed_with(&self, other: &Filter, share: f64) -> Filter {
+        let mut mixed = self.clone();
+        let off: [f64; STATES] = std::array::from_fn(|i| other.mean[i] - self.mean[i]);
+        for i in 0..STATES {
+            mixed.mean[i] += share * off[i];
+            for j in 0..STATES {
+                mixed.covariance[i][j] += share * (other.covariance[i][j] - self.covariance[i][j])
+                    + share * (1.0 - share) * off[i] * off[j];
+            }
+        }
+        mixed
+    }
+
+    /// Replaces states by independent ones with the given marginal.
+    pub(crate) fn restore(&mut self, marginal: &Marginal) {
+        for (a, i) in marginal.states.iter().enumerate() {
+            for j in 0..STATES {
+                self.covariance[*i][j] = 0.0;
+                self.covariance[j][*i] = 0.0;
+            }
+            self.mean[*i] = marginal.mean[a];
+        }
+        for (a, i) in marginal.states.iter().enumerate() {
+            for (b, j) in marginal.states.iter().enumerate() {
+                self.covariance[*i][*j] = marginal.covariance[a][b];
+            }
+        }
+    }
+}
+
+/// Mean and covariance of some states.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Marginal {
+    pub(crate) states: Vec<usize>,
+    pub(crate) mean: Vec<f64>,
+    pub(crate) covariance: Vec<Vec<f64>>,
+}
+
+impl Marginal {
+    /// Takes the marginal of some states from a filter.
+    pub(crate) fn from_filter(filter: &Filter, states: &[usize]) -> Marginal {
+        let row = |i: usize| states.iter().map(|j| filter.covariance[i][*j]).collect();
+        Marginal {
+            states: states.to_vec(),
+            mean: states.iter().map(|i| filter.mean[*i]).collect(),
+            covariance: states.iter().map(|i| row(*i)).collect(),
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Readings of one time as the tracker takes them, whatever the hypothesis.
+
+use super::states::RETENTION_S;
+use binnacle_analysis::estimate::{Scatter, WhiteNoise};
+use binnacle_analysis::fit::Observation;
+use binnacle_analysis::gyro_speed_error::northerly_speed_error_deg;
+use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation, wrap_180};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
+use std::f64::consts::TAU;
+
+const DAY_S: f64 = 86_400.0;
+/// Gap between rows that counts as a port call, seconds.
+const PORT_GAP_S: f64 = 2.5 * 3600.0;
+
+/// Row of readings.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub(crate) time: Timestamp,
+    /// Time since the row before.
+    pub(crate) seconds: f64,
+    /// Distance since the row before, nautical miles.
+    pub(crate) miles: f64,
+    /// Turn since the row before, degrees.
+    pub(crate) turned_deg: f64,
+    /// True if the ship was in port since the row before.
+    pub(crate) after_port: bool,
+    pub(crate) compass_deg: f64,
+    /// Heading by gyro and by satellite compass, less the charted variation.
+    pub(crate) gyro_deg: Option<f64>,
+    pub(crate) satellite_deg: Option<f64>,
+    pub(crate) variation_deg: f64,
+    pub(crate) earth: EarthField,
+    pub(crate) cos_lat: f64,
+    /// Gyro's speed error on north, degrees.
+    pub(crate) northerly_deg: f64,
+    /// Local time as an angle.
+    pub(crate) daily: [f64; 2],
+    /// Lagged horizontal field in ship axes for each memory, nT.
+    pub(crate) lagged_nt: [[f64; 2]; 2],
+    pub(crate) roll_rad: Option<f64>,
+    pub(crate) rate_of_turn_deg_min: f64,
+    pub(crate) white: WhiteNoise,
+    pub(crate) difference_white: WhiteNoise,
+}
+
+/// Maker of rows from samples in order of time: what a row needs of those before it.
+#[derive(Clone, Debug)]
+pub(crate) struct RowMaker {
+    scatter: Scatter,
+    last: Option<Last>,
+    /// Horizontal field in ship axes with each memory, nT.
+    lagged_nt: [[f64; 2]; 2],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Last {
+    time: Timestamp,
+    position: Position,
+    heading_deg: f64,
+    field_nt: [f64; 2],
+}
+
+/// Sample with what is known of its place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed<'a> {
+    pub(crate) sample: &'a Sample,
+    pub(crate) gyro: Option<TrueHeading>,
+    pub(crate) variation: Variation,
+    pub(crate) earth: EarthField,
+}
+
+impl RowMaker {
+    pub(crate) fn new() -> RowMaker {
+        RowMaker {
+            scatter: Scatter::default(),
+            last: None,
+            lagged_nt: [[0.0; 2]; 2],
+        }
+    }
+
+    /// Returns the row of a sample that has a reference.
+    pub(crate) fn row(&mut self, placed: &Placed<'_>) -> Option<Row> {
+        let Placed {
+            sample,
+            gyro,
+            variation,
+            earth,
+        } = *placed;
+        let variation_deg = variation.degrees_east();
+        let less = |heading: TrueHeading| wrap_180(heading.degrees() - variation_deg);
+        let gyro_deg = gyro.map(less);
+        let satellite_deg = sample.satellite.map(less);
+        let heading_deg = satellite_deg.or(gyro_deg)?;
+        let last = self.last;
+        let seconds = last.map_or(0.0, |last| sample.time.seconds_since(last.time));
+        let [forward, starboard, _] = earth.in_ship_axes(heading_deg.to_radians());
+        let field_nt = [forward, starboard];
+        self.lag(last, seconds, field_nt);
+        self.last = Some(Last {
+            time: sample.time,
+            position: sample.position,
+            heading_deg,
+            field_nt,
+        });
+        let observation = observation(placed, gyro_deg.or(satellite_deg)?);
+        let phase = sample.time.micros() as f64 / 1e6 / DAY_S + sample.position.lon_deg() / 360.0;
+        let (sin, cos) = (TAU * phase.rem_euclid(1.0)).sin_cos();
+        Some(Row {
+            time: sample.time,
+            seconds,
+            miles: last.map_or(0.0, |last| miles(last.position, sample.position)),
+            turned_deg: last.map_or(0.0, |last| wrap_180(heading_deg - last.heading_deg)),
+            after_port: seconds > PORT_GAP_S,
+            compass_deg: sample.compass.degrees(),
+            gyro_deg,
+            satellite_deg,
+            variation_deg,
+            earth,
+            cos_lat: sample.position.lat_deg().to_radians().cos().max(0.05),
+            northerly_deg: northerly_speed_error_deg(
+                sample.sog_kn.unwrap_or(0.0),
+                sample.position.lat_deg(),
+            ),
+            daily: [sin, cos],
+            lagged_nt: self.lagged_nt,
+            roll_rad: sample.roll_deg.map(f64::to_radians),
+            rate_of_turn_deg_min: sample.rate_of_turn_deg_min.unwrap_or(0.0),
+            white: self.scatter.white(&observation),
+            difference_white: WhiteNoise::of_difference(&observation),
+        })
+    }
+
+    /// Lets the retained field follow the induced one, on the mean of both headings.
+    fn lag(&mut self, last: Option<Last>, seconds: f64, field_nt: [f64; 2]) {
+        let before = last.map_or(field_nt, |last| last.field_nt);
+        for (lagged, memory_s) in self.lagged_nt.iter_mut().zip(RETENTION_S) {
+            let keep = (-seconds / memory_s).exp();
+            for axis in 0..2 {
+                let mean = f64::midpoint(before[axis], field_nt[axis]);
+                lagged[axis] = mean + (lagged[axis] - mean) * keep;
+            }
+        }
+    }
+}
+
+/// Returns the sample as the scatter takes it.
+fn observation(placed: &Placed<'_>, heading_deg: f64) -> Observation {
+    let sample = placed.sample;
+    let off = wrap_180(heading_deg - sample.compass.degrees());
+    Observation {
+        time: Some(sample.time),
+        position: Some(sample.position),
+        compass: CompassHeading::new(sample.compass.degrees()).unwrap_or(sample.compass),
+        deviation: Deviation::new(off).unwrap_or(Deviation::ZERO),
+        variation: placed.variation,
+        h_nt: placed.earth.h_nt,
+        z_nt: placed.earth.z_nt,
+        gyro_share: 1.0,
+        gyro_less_satellite_deg: None,
+        sog_kn: sample.sog_kn,
+        windows: sample.windows,
+        spread_deg: sample.spread_deg,
+        weight: 1.0,
+    }
+}
+
+/// Returns the distance in nautical miles, nearly.
+fn miles(a: Position, b: Position) -> f64 {
+    let north = a.lat_deg() - b.lat_deg();
+    let east = wrap_180(a.lon_deg() - b.lon_deg()) * a.lat_deg().to_radians().cos();
+    60.0 * north.hypot(east)
+}

@@ -1,0 +1,225 @@
+//! A row's readings as scalars in the filter's states, for one hypothesis.
+
+use super::levels::{Level, Levels};
+use super::row::Row;
+use super::states::{
+    ALIGNMENT, ANOMALY, BX, BY, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW, HEEL,
+    HEEL_NT_PER_RAD, LAG, LIST, LIST_NT, REFLECTION, RETENTION, SATELLITE, SCHULER, SETTLING,
+    SPEED, STATES, SWING, USUAL_H_NT, VARIATION, dot, parameters,
+};
+use binnacle_analysis::estimate::{Direction, Needle, POPULATION_SD};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::model::Parameters;
+use binnacle_compass::ship::PARAMETERS;
+
+/// Gyro's share of the reference heading where both are read: the noise that is new in every
+/// row is least.
+const GYRO_SHARE: f64 = 0.7;
+/// Reference's share of the heading at which a row is taken.
+const REFERENCE_SHARE: f64 = 0.6;
+/// Standard deviation of a reading that says nothing, degrees.
+const SAYS_NOTHING_DEG: f64 = 20.0;
+
+/// Linearised reading, degrees.
+#[derive(Clone, Debug)]
+pub(crate) struct Scalar {
+    /// Reading less its prediction by the mean.
+    pub(crate) innovation: f64,
+    pub(crate) load: [f64; STATES],
+    /// Variance of the noise that is new in it.
+    pub(crate) variance: f64,
+}
+
+/// Instruments that a hypothesis holds to say nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Silent {
+    pub(crate) compass: bool,
+    pub(crate) gyro: bool,
+    pub(crate) satellite: bool,
+}
+
+/// Returns gyro less satellite compass of a row that has both, at the mean.
+pub(crate) fn difference(
+    row: &Row,
+    mean: &[f64; STATES],
+    levels: &Levels,
+    silent: Silent,
+) -> Option<Scalar> {
+    let gyro = Reference::gyro(row, row.gyro_deg?);
+    let satellite = Reference::satellite(row, row.satellite_deg?);
+    let level = levels.at(Level::DifferenceWhite);
+    let variance = if silent.gyro || silent.satellite {
+        SAYS_NOTHING_DEG.powi(2)
+    } else {
+        row.difference_white.variance(level * level)
+    };
+    Some(gyro.less(&satellite, mean, variance))
+}
+
+/// Returns reference less compass of a row, at the mean.
+pub(crate) fn deviation(
+    row: &Row,
+    mean: &[f64; STATES],
+    levels: &Levels,
+    silent: Silent,
+) -> Scalar {
+    let level = levels.at(Level::White);
+    let white = row.white.variance(level * level);
+    let share = gyro_share(row, silent);
+    let is_reference_silent = (share > 0.0 && silent.gyro) || (share < 1.0 && silent.satellite);
+    let variance = if silent.compass || is_reference_silent {
+        SAYS_NOTHING_DEG.powi(2)
+    } else {
+        white
+    };
+    deviation_by(row, mean, &Reference::mixed(row, share), variance)
+}
+
+/// Returns the gyro's share of the reference heading.
+pub(crate) fn gyro_share(row: &Row, silent: Silent) -> f64 {
+    match (row.gyro_deg, row.satellite_deg) {
+        (Some(_), Some(_)) if silent.gyro && !silent.satellite => 0.0,
+        (Some(_), Some(_)) if silent.satellite && !silent.gyro => 1.0,
+        (Some(_), Some(_)) => GYRO_SHARE,
+        (_, None) => 1.0,
+        (None, _) => 0.0,
+    }
+}
+
+/// Heading by a reference, less the charted variation, with the loads of its errors.
+struct Reference {
+    heading_deg: f64,
+    load: [f64; STATES],
+}
+
+impl Reference {
+    fn gyro(row: &Row, heading_deg: f64) -> Reference {
+        let mut load = [0.0; STATES];
+        let (sin, cos) = (heading_deg + row.variation_deg).to_radians().sin_cos();
+        load[GYRO] = 1.0;
+        load[GYRO_SLOW] = 1.0 / row.cos_lat;
+        load[SCHULER] = 1.0 / row.cos_lat;
+        load[SPEED] = row.northerly_deg * cos;
+        load[GYRO_HEADING] = sin;
+        load[GYRO_HEADING + 1] = cos;
+        load[SETTLING] = 1.0;
+        load[LAG] = -row.rate_of_turn_deg_min;
+        Reference { heading_deg, load }
+    }
+
+    fn satellite(row: &Row, heading_deg: f64) -> Reference {
+        let mut load = [0.0; STATES];
+        load[SATELLITE] = 1.0;
+        load[REFLECTION] = 1.0;
+        load[LAG] = -row.rate_of_turn_deg_min;
+        Reference { heading_deg, load }
+    }
+
+    fn mixed(row: &Row, gyro_share: f64) -> Reference {
+        let gyro = row.gyro_deg.map(|heading| Reference::gyro(row, heading));
+        let satellite = row
+            .satellite_deg
+            .map(|heading| Reference::satellite(row, heading));
+        match (gyro, satellite) {
+            (Some(gyro), Some(satellite)) => {
+                let off = wrap_180(gyro.heading_deg - satellite.heading_deg);
+                Reference {
+                    heading_deg: satellite.heading_deg + gyro_share * off,
+                    load: std::array::from_fn(|i| {
+                        gyro_share * gyro.load[i] + (1.0 - gyro_share) * satellite.load[i]
+                    }),
+                }
+            }
+            (Some(one), None) | (None, Some(one)) => one,
+            (None, None) => Reference {
+                heading_deg: row.compass_deg,
+                load: [0.0; STATES],
+            },
+        }
+    }
+
+    fn less(&self, other: &Reference, mean: &[f64; STATES], variance: f64) -> Scalar {
+        let load: [f64; STATES] = std::array::from_fn(|i| self.load[i] - other.load[i]);
+        Scalar {
+            innovation: wrap_180(self.heading_deg - other.heading_deg - dot(&load, mean)),
+            load,
+            variance,
+        }
+    }
+}
+
+fn deviation_by(row: &Row, mean: &[f64; STATES], reference: &Reference, variance: f64) -> Scalar {
+    let by_h = USUAL_H_NT / row.earth.h_nt;
+    let mut load = reference.load;
+    load[ALIGNMENT] = 1.0;
+    load[SWING] = 1.0;
+    load[FRICTION] = by_h;
+    load[VARIATION] = by_h;
+    load[ANOMALY] = by_h;
+    load[DAILY] = by_h * row.daily[0];
+    load[DAILY + 1] = by_h * row.daily[1];
+    let constant = dot(&load, mean);
+    let ship = Ship::new(row, mean);
+    // Errors of reference and variation turn the heading; those of the compass do not.
+    let of_card = mean[ALIGNMENT] + mean[SWING] + by_h * mean[FRICTION];
+    let magnetic_deg = reference.heading_deg - (constant - of_card);
+    let innovation_at = |needle: &Needle| {
+        wrap_180(
+            reference.heading_deg
+                - row.compass_deg
+                - needle.deviation_rad().to_degrees()
+                - constant,
+        )
+    };
+    let rough = innovation_at(&ship.needle(magnetic_deg, row));
+    let fused_deg = magnetic_deg - (1.0 - REFERENCE_SHARE) * rough;
+    let needle = ship.needle(fused_deg, row);
+    let innovation = innovation_at(&needle);
+    Ship::load(row, &needle, &mut load);
+    Scalar {
+        innovation,
+        load,
+        variance,
+    }
+}
+
+/// Ship's magnetism with the fields of a row's circumstances in it.
+struct Ship {
+    parameters: Parameters,
+}
+
+impl Ship {
+    fn new(row: &Row, mean: &[f64; STATES]) -> Ship {
+        let mut parameters = parameters(mean);
+        for (share, lagged) in mean[RETENTION..].iter().zip(row.lagged_nt) {
+            parameters.bx_nt += share / 100.0 * lagged[0];
+            parameters.by_nt += share / 100.0 * lagged[1];
+        }
+        parameters.by_nt += mean[LIST] * LIST_NT;
+        parameters.by_nt += mean[HEEL] * HEEL_NT_PER_RAD * row.roll_rad.unwrap_or(0.0);
+        Ship { parameters }
+    }
+
+    fn needle(&self, magnetic_deg: f64, row: &Row) -> Needle {
+        Needle::at(
+            &self.parameters,
+            Direction::from_radians(magnetic_deg.to_radians()),
+            row.earth,
+        )
+    }
+
+    /// Adds the slopes by the ship's states, in degrees.
+    fn load(row: &Row, needle: &Needle, load: &mut [f64; STATES]) {
+        let moves = 1.0 + (1.0 - REFERENCE_SHARE) * (1.0 - needle.compass_per_magnetic());
+        let slope = needle.gradient().map(|g| (g * moves).to_degrees());
+        for j in 0..PARAMETERS {
+            load[j] = slope[j] * POPULATION_SD[j];
+        }
+        let [sx, sy] = [slope[BX], slope[BY]];
+        for (load, lagged) in load[RETENTION..].iter_mut().zip(row.lagged_nt) {
+            *load = (sx * lagged[0] + sy * lagged[1]) / 100.0;
+        }
+        load[LIST] = sy * LIST_NT;
+        load[HEEL] = sy * HEEL_NT_PER_RAD * row.roll_rad.unwrap_or(0.0);
+    }
+}

@@ -1,0 +1,162 @@
+//! Transition of the states from one row to the next.
+
+use super::levels::{Level, Levels};
+use super::row::Row;
+use super::states::{
+    ANOMALY, BX, BY, FRICTION, GYRO_SLOW, LIST, LIST_NT, REFLECTION, SCHULER, SETTLING, STATES,
+    SWING, VARIATION,
+};
+use binnacle_analysis::estimate::{
+    COMPASS_SWING_S, POPULATION_SD, SATELLITE_S, SLOW_GYRO_S, VARIATION_NM, swing_over,
+};
+use binnacle_compass::ship::PARAMETERS;
+
+/// Time for which the drift level holds, seconds.
+const DRIFT_S: f64 = 30.0 * 86_400.0;
+/// Memory of an unmeasured list, seconds.
+const LIST_S: f64 = 2.0 * 86_400.0;
+/// Memory of a gyro that settles, seconds.
+const SETTLING_S: f64 = 5400.0;
+/// Memory of friction on one course, seconds: the sea works the card loose.
+const FRICTION_S: f64 = 6.0 * 3600.0;
+/// Change of course from which the card's friction is another, degrees.
+const RESEATED_DEG: f64 = 5.0;
+/// Change of course that kicks the gyro, degrees, and the kick over the swing's level.
+const KICK_DEG: f64 = 20.0;
+const KICK: f64 = 2.0;
+/// Greatest time since a turn when the ship has settled again, seconds.
+const SETTLED_S: f64 = 900.0;
+/// Memory and standard deviation of a local anomaly as the ship passes it, where H is usual.
+const ANOMALY_S: f64 = 3600.0;
+const ANOMALY_DEG: f64 = 2.5;
+/// Step and drift of the induced parameters over the population, for a step or drift of
+/// (bx, by) of the population's size.
+const INDUCED_SHARE: f64 = 0.5;
+
+/// Transition over one step.
+#[derive(Clone, Debug)]
+pub(crate) struct Transition {
+    /// Remaining share of each state.
+    pub(crate) keep: [f64; STATES],
+    /// Variance added to each state.
+    pub(crate) added: [f64; STATES],
+    /// States that swing with a rate of their own.
+    pub(crate) pairs: Vec<Pair>,
+}
+
+/// Transition of a state and its rate, which follows it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair {
+    pub(crate) state: usize,
+    pub(crate) matrix: [[f64; 2]; 2],
+    pub(crate) added: [[f64; 2]; 2],
+}
+
+impl Transition {
+    /// Returns the transition to a row.
+    pub(crate) fn to(row: &Row, levels: &Levels) -> Transition {
+        let mut t = Transition {
+            keep: [1.0; STATES],
+            added: [0.0; STATES],
+            pairs: Vec::with_capacity(2),
+        };
+        let seconds = row.seconds;
+        let turned = row.turned_deg.abs();
+        t.fade(GYRO_SLOW, seconds / SLOW_GYRO_S, levels.at(Level::GyroSlow));
+        t.fade(SWING, seconds / COMPASS_SWING_S, levels.at(Level::Swing));
+        t.fade(
+            VARIATION,
+            row.miles / VARIATION_NM,
+            levels.at(Level::Variation),
+        );
+        t.fade(
+            REFLECTION,
+            seconds / SATELLITE_S,
+            levels.at(Level::Reflection),
+        );
+        t.fade(LIST, seconds / LIST_S, levels.at(Level::List) / LIST_NT);
+        t.fade(SETTLING, seconds / SETTLING_S, 0.0);
+        let friction = if turned > RESEATED_DEG {
+            f64::INFINITY
+        } else {
+            seconds / FRICTION_S
+        };
+        t.fade(FRICTION, friction, levels.at(Level::Friction));
+        t.drift(levels.at(Level::Drift).powi(2) * seconds / DRIFT_S);
+        if row.after_port {
+            t.drift(levels.at(Level::PortStep).powi(2));
+        }
+        t.swing(seconds, turned > KICK_DEG, levels.at(Level::Schuler));
+        t
+    }
+
+    /// Replaces the variation's noise by that of a storm or an anomaly.
+    pub(crate) fn disturb(&mut self, seconds: f64, memory_s: f64, sd_deg: f64) {
+        self.added[VARIATION] = 0.0;
+        self.fade(VARIATION, seconds / memory_s, sd_deg);
+    }
+
+    /// Adds a random step of (bx, by), nT squared, with its induced part.
+    pub(crate) fn drift(&mut self, variance_nt2: f64) {
+        let share = variance_nt2 / POPULATION_SD[BX].powi(2);
+        for j in 0..PARAMETERS {
+            let part = if j == BX || j == BY {
+                1.0
+            } else {
+                INDUCED_SHARE * INDUCED_SHARE
+            };
+            self.added[j] += part * share;
+        }
+    }
+
+    /// Lets a stationary state of standard deviation `sd` fade.
+    fn fade(&mut self, state: usize, memories: f64, sd: f64) {
+        let keep = (-memories).exp();
+        self.keep[state] = keep;
+        self.added[state] = sd * sd * (1.0 - keep * keep);
+    }
+
+    fn swing(&mut self, seconds: f64, kicked: bool, sd: f64) {
+        let [[a, b], [c, d]] = swing_over(seconds);
+        let variance = sd * sd;
+        let across = -variance * (a * c + b * d);
+        let mut added = [
+            [variance * (1.0 - a * a - b * b), across],
+            [across, variance * (1.0 - c * c - d * d)],
+        ];
+        if kicked {
+            let [[_, swing], [_, rate]] = swing_over(seconds.min(SETTLED_S));
+            let kick = KICK * KICK * variance;
+            added[0][0] += kick * swing * swing;
+            added[0][1] += kick * swing * rate;
+            added[1][0] += kick * swing * rate;
+            added[1][1] += kick * rate * rate;
+        }
+        self.pairs.push(Pair {
+            state: SCHULER,
+            matrix: [[a, b], [c, d]],
+            added,
+        });
+    }
+
+    /// Lets a local anomaly come and go smoothly: a Gaussian process of the Matérn kind, once
+    /// differentiable, of memory [`ANOMALY_S`] (Rasmussen & Williams 2006, eq. 4.17).
+    pub(crate) fn pass_anomaly(&mut self, seconds: f64) {
+        let hours = seconds / 3600.0;
+        let decay = 3.0_f64.sqrt() / (ANOMALY_S / 3600.0);
+        let keep = (-decay * hours).exp();
+        let [a, b] = [keep * (1.0 + decay * hours), keep * hours];
+        let [c, d] = [-keep * decay * decay * hours, keep * (1.0 - decay * hours)];
+        let value = ANOMALY_DEG * ANOMALY_DEG;
+        let rate = value * decay * decay;
+        let across = -(a * c * value + b * d * rate);
+        self.pairs.push(Pair {
+            state: ANOMALY,
+            matrix: [[a, b], [c, d]],
+            added: [
+                [value - a * a * value - b * b * rate, across],
+                [across, rate - c * c * value - d * d * rate],
+            ],
+        });
+    }
+}

@@ -1,0 +1,136 @@
+//! The bank of hypotheses: which leads, which are dropped, and which are the same.
+
+use super::tracker::Tracker;
+use crate::hypotheses::hypothesis::Hypothesis;
+use crate::hypotheses::kinds::Kind;
+use crate::state_space::filter::Filter;
+use crate::state_space::states::STATES;
+
+/// Log weight below the best's at which a hypothesis is given up.
+const GIVEN_UP: f64 = 16.0;
+/// Most hypotheses.
+const MOST_HYPOTHESES: usize = 24;
+/// Log weight by which another hypothesis takes the lead.
+const TAKES_LEAD: f64 = 1.0;
+/// Rows after which the starting guesses are one.
+const STARTING_ROWS: usize = 1000;
+/// Seconds within which two events of a kind are the same.
+const SAME_S: f64 = 6.0 * 3600.0;
+/// Rows between looks for hypotheses that have become alike, and the difference of means in
+/// standard deviations up to which they are.
+const ALIKE_ROWS: usize = 36;
+const ALIKE: f64 = 0.4;
+
+impl Tracker {
+    /// Puts the best first, and drops those that are hopeless or the same as a better one.
+    pub(super) fn prune(&mut self) {
+        let lead_weight = self.bank[0].log_weight();
+        let lead_events = self.bank[0].events.len();
+        if self.best() > lead_weight + TAKES_LEAD {
+            self.weigh_alternatives();
+        }
+        let best = self.best();
+        let leader = if best > lead_weight + TAKES_LEAD {
+            self.bank
+                .iter()
+                .position(|h| h.log_weight() >= best)
+                .unwrap_or(0)
+        } else {
+            0
+        };
+        if leader != 0 {
+            self.bank.swap(0, leader);
+            self.checkpoints.clear();
+            self.tried.clear();
+            self.sums = self.sums.restarted();
+            self.learning.restart(&self.bank[0]);
+        }
+        let _ = lead_events;
+        let merges = self.count > STARTING_ROWS;
+        let mut kept: Vec<Hypothesis> = Vec::new();
+        let mut bank = std::mem::take(&mut self.bank);
+        let lead = bank.remove(0);
+        bank.sort_by(|a, b| b.log_weight().total_cmp(&a.log_weight()));
+        kept.push(lead);
+        for hypothesis in bank {
+            if hypothesis.log_weight() < best - GIVEN_UP || kept.len() >= MOST_HYPOTHESES {
+                continue;
+            }
+            let twin = kept
+                .iter()
+                .position(|other| is_same(other, &hypothesis, merges));
+            match twin {
+                Some(twin) if merges && kept[twin].start != hypothesis.start => {
+                    merge(&mut kept[twin], &hypothesis);
+                }
+                Some(_) => {}
+                None => kept.push(hypothesis),
+            }
+        }
+        self.bank = kept;
+        if self.count.is_multiple_of(ALIKE_ROWS) && merges {
+            self.merge_alike();
+        }
+    }
+
+    /// Merges hypotheses whose filters no longer differ: what they suppose is past.
+    fn merge_alike(&mut self) {
+        let mut kept: Vec<Hypothesis> = Vec::new();
+        for hypothesis in std::mem::take(&mut self.bank) {
+            let alike = kept.iter().position(|other| is_alike(other, &hypothesis));
+            match alike {
+                Some(alike) => merge(&mut kept[alike], &hypothesis),
+                None => kept.push(hypothesis),
+            }
+        }
+        self.bank = kept;
+    }
+}
+
+/// Returns true if two hypotheses suppose the same events.
+fn is_same(a: &Hypothesis, b: &Hypothesis, merges_starts: bool) -> bool {
+    a.wild == b.wild
+        && (merges_starts || a.start == b.start)
+        && a.events.len() == b.events.len()
+        && a.events.iter().zip(&b.events).all(|(a, b)| {
+            let same_end = match (a.until, b.until) {
+                (None, None) => true,
+                (Some(a), Some(b)) => a.seconds_since(b).abs() <= SAME_S,
+                _ => false,
+            };
+            a.kind == b.kind && a.from.seconds_since(b.from).abs() <= SAME_S && same_end
+        })
+}
+
+/// Returns true if two hypotheses have the same lasting events but old steps, and predict the
+/// same.
+fn is_alike(a: &Hypothesis, b: &Hypothesis) -> bool {
+    let moving = |h: &Hypothesis| -> Vec<Kind> {
+        h.lasting()
+            .filter(|kind| !kind.row().jumps.is_empty() || !kind.changes_deviation())
+            .filter(|kind| !matches!(kind, Kind::Strike | Kind::Cargo | Kind::Alignment))
+            .collect()
+    };
+    moving(a) == moving(b)
+        && (0..STATES).all(|i| {
+            let variance = a.filter.covariance[i][i].min(b.filter.covariance[i][i]);
+            let apart = a.filter.mean[i] - b.filter.mean[i];
+            apart * apart <= ALIKE * ALIKE * variance
+                && a.filter.covariance[i][i].max(b.filter.covariance[i][i])
+                    <= 1.5 * variance + 1e-12
+        })
+}
+
+/// Merges a hypothesis into another by moments.
+fn merge(into: &mut Hypothesis, other: &Hypothesis) {
+    let (a, b) = (into.log_weight(), other.log_weight());
+    let share = 1.0 / (1.0 + (a - b).exp());
+    let filter: Filter = into.filter.mixed_with(&other.filter, share);
+    let weight = a.max(b) + (-(a - b).abs()).exp().ln_1p();
+    into.log_prior += weight - a;
+    let log_likelihood = into.filter.log_likelihood;
+    into.filter = Filter {
+        log_likelihood,
+        ..filter
+    };
+}

@@ -1,0 +1,139 @@
+//! Running sums of innovations, from which events are proposed.
+//!
+//! A jump of a state shows in later innovations by the state's load. Sums of loads and
+//! innovations between two rows therefore give the log likelihood ratio of a jump between
+//! them, nearly: the filter takes up some of it meanwhile. That is enough to propose an event;
+//! it is judged by a filter of its own.
+
+use crate::hypotheses::hypothesis::Read;
+use crate::hypotheses::kinds::{Jump, KindRow};
+use crate::state_space::row::Row;
+use crate::state_space::scalar::{Silent, gyro_share};
+use crate::state_space::states::{ALIGNMENT, BX, BY, GYRO, SATELLITE, SETTLING};
+use nalgebra::{DMatrix, DVector};
+
+/// States whose jumps are looked for.
+pub(crate) const WATCHED: [usize; 5] = [BX, BY, ALIGNMENT, GYRO, SATELLITE];
+/// Largest square of an innovation that counts as a disturbance: a wild reading is no more.
+const LARGEST_SQUARE: f64 = 16.0;
+/// Cost in squares of taking the noise for a disturbance's: twice the logarithm of the ratio of
+/// standard deviations.
+const WIDER_COST: f64 = 2.0;
+/// Largest innovation that counts for a jump, standard deviations.
+const LARGEST_SD: f64 = 6.0;
+/// Innovations over which the usual square is taken.
+const USUAL_ROWS: f64 = 2000.0;
+const SUMS: usize = WATCHED.len();
+
+/// Sums from the first row on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct EvidenceSums {
+    information: [[f64; SUMS]; SUMS],
+    score: [f64; SUMS],
+    /// Squares of innovations beyond what is usual.
+    excess: f64,
+    /// Usual square of an innovation; none before the first.
+    usual: Option<f64>,
+}
+
+impl EvidenceSums {
+    /// Adds a row that was read.
+    pub(crate) fn add(&mut self, row: &Row, read: &Read) {
+        let share = gyro_share(row, Silent::default());
+        let load = &read.load.load;
+        let main = [load[BX], load[BY], 1.0, share, 1.0 - share];
+        self.add_scalar(&main, read.deviation);
+        if let Some(difference) = read.difference {
+            self.add_scalar(&[0.0, 0.0, 0.0, 1.0, -1.0], difference);
+        }
+    }
+
+    fn add_scalar(
+        &mut self,
+        load: &[f64; SUMS],
+        innovation: crate::state_space::filter::Innovation,
+    ) {
+        let z_squared = innovation.z_squared();
+        let capped = (LARGEST_SD * LARGEST_SD / z_squared).sqrt().min(1.0);
+        let weight = 1.0 / innovation.variance;
+        for i in 0..SUMS {
+            self.score[i] += load[i] * innovation.value * capped * weight;
+            for j in 0..SUMS {
+                self.information[i][j] += load[i] * load[j] * weight;
+            }
+        }
+        let square = z_squared.min(LARGEST_SQUARE);
+        let usual = self.usual.unwrap_or(1.0);
+        self.usual = Some(usual + (square - usual) / USUAL_ROWS);
+        self.excess += square - usual - WIDER_COST;
+    }
+
+    /// Returns the sums since an earlier time.
+    pub(crate) fn since(&self, earlier: &EvidenceSums) -> EvidenceSums {
+        let mut sums = *self;
+        for i in 0..SUMS {
+            sums.score[i] -= earlier.score[i];
+            for j in 0..SUMS {
+                sums.information[i][j] -= earlier.information[i][j];
+            }
+        }
+        sums.excess -= earlier.excess;
+        sums
+    }
+
+    /// Returns the greatest log likelihood ratio of any one state's jump of any size.
+    pub(crate) fn greatest(&self) -> f64 {
+        let of = |i: usize| {
+            let information = self.information[i][i];
+            if information > 0.0 {
+                0.5 * self.score[i] * self.score[i] / information
+            } else {
+                0.0
+            }
+        };
+        (0..SUMS).map(of).fold(0.0, f64::max)
+    }
+
+    /// Returns empty sums that know the usual square.
+    pub(crate) fn restarted(&self) -> EvidenceSums {
+        EvidenceSums {
+            usual: self.usual,
+            ..EvidenceSums::default()
+        }
+    }
+
+    /// Returns the squares beyond the usual.
+    pub(crate) fn excess(&self) -> f64 {
+        self.excess
+    }
+
+    /// Returns the logarithm of the Bayes factor of a kind's jump against none.
+    pub(crate) fn log_bayes_factor(&self, kind: &KindRow) -> f64 {
+        let watched: Vec<(usize, f64)> = kind.jumps.iter().filter_map(watched).collect();
+        let n = watched.len();
+        if n == 0 {
+            return 0.0;
+        }
+        let information = DMatrix::from_fn(n, n, |a, b| {
+            self.information[watched[a].0][watched[b].0] * watched[a].1 * watched[b].1
+                + f64::from(u8::from(a == b))
+        });
+        let score = DVector::from_fn(n, |a, _| self.score[watched[a].0] * watched[a].1);
+        let Some(factor) = information.cholesky() else {
+            return 0.0;
+        };
+        let log_determinant: f64 = factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
+        0.5 * score.dot(&factor.solve(&score)) - log_determinant
+    }
+}
+
+/// Returns the place of a jump's state among the sums, with its standard deviation.
+fn watched(jump: &Jump) -> Option<(usize, f64)> {
+    let state = if jump.state == SETTLING {
+        GYRO
+    } else {
+        jump.state
+    };
+    let place = WATCHED.iter().position(|watched| *watched == state)?;
+    Some((place, jump.sd))
+}

@@ -1,0 +1,218 @@
+//! The tracker: weighs accounts of what happened as rows arrive.
+
+use super::evidence_sums::EvidenceSums;
+use super::learning::Learning;
+use super::records::{Checkpoint, Detected, Tried};
+use crate::hypotheses::hypothesis::{Begin, Hypothesis, Read};
+use crate::hypotheses::kinds::Kind;
+use crate::hypotheses::starts::starts;
+use crate::state_space::levels::Levels;
+use crate::state_space::row::{Placed, Row, RowMaker};
+use crate::state_space::ship_state::ShipState;
+use crate::state_space::transition::Transition;
+use std::collections::VecDeque;
+
+/// Rows that are kept, so that an event may be supposed among them: three days.
+const KEPT_ROWS: usize = 432;
+/// Rows between checkpoints.
+const CHECKPOINT_ROWS: usize = 6;
+/// Rows of late after each of which there is a checkpoint.
+const RECENT_ROWS: usize = 12;
+/// Rows between looks for events, and for ends of events.
+const LOOK_ROWS: usize = 2;
+const END_ROWS: usize = 6;
+/// Log weight below the best's from which a hypothesis is left out of the mixture.
+const NEGLIGIBLE: f64 = 7.0;
+
+/// Accounts of what happened to a ship, by the rows so far.
+pub(crate) struct Tracker {
+    maker: RowMaker,
+    reference_sd_deg: f64,
+    pub(crate) learning: Learning,
+    /// Hypotheses; the first leads.
+    pub(crate) bank: Vec<Hypothesis>,
+    pub(super) rows: VecDeque<Row>,
+    /// Number of the first row kept, and of all rows.
+    pub(super) first_kept: usize,
+    pub(crate) count: usize,
+    pub(super) sums: EvidenceSums,
+    pub(super) checkpoints: VecDeque<Checkpoint>,
+    /// Events that were supposed and weighed since the lead began.
+    pub(super) tried: Vec<Tried>,
+    pub(crate) detected: Vec<Detected>,
+}
+
+/// Row as the lead predicted and read it.
+pub(crate) struct Tracked {
+    pub(crate) read: Read,
+}
+
+impl Tracker {
+    pub(crate) fn new(reference_sd_deg: f64) -> Tracker {
+        Tracker {
+            maker: RowMaker::new(),
+            reference_sd_deg,
+            learning: Learning::new(),
+            bank: Vec::new(),
+            rows: VecDeque::new(),
+            first_kept: 0,
+            count: 0,
+            sums: EvidenceSums::default(),
+            checkpoints: VecDeque::new(),
+            tried: Vec::new(),
+            detected: Vec::new(),
+        }
+    }
+
+    /// Reads the next sample.
+    pub(crate) fn read(&mut self, placed: &Placed<'_>) -> Option<Tracked> {
+        let row = self.maker.row(placed)?;
+        if self.bank.is_empty() {
+            self.bank = starts(&row, self.learning.levels(), self.reference_sd_deg);
+            self.learning.restart(&self.bank[0]);
+        }
+        self.keep_checkpoint(&row);
+        if row.after_port || self.count.is_multiple_of(END_ROWS) {
+            self.suppose_endings(&row);
+        }
+        let tracked = self.read_all(&row);
+        self.rows.push_back(row);
+        self.count += 1;
+        if self.rows.len() > KEPT_ROWS {
+            self.rows.pop_front();
+            self.first_kept += 1;
+            let oldest = self.rows[0].time;
+            self.tried.retain(|tried| tried.from >= oldest);
+            while self
+                .checkpoints
+                .front()
+                .is_some_and(|c| c.after < self.first_kept)
+            {
+                self.checkpoints.pop_front();
+            }
+        }
+        if self.count.is_multiple_of(LOOK_ROWS) {
+            self.suppose_events();
+        }
+        self.prune();
+        self.detect(placed.sample.time);
+        Some(tracked)
+    }
+
+    /// Returns the circumstances of what begins between the last row and the next.
+    fn begin(&self, row: &Row) -> Begin {
+        let last = self.rows.back().unwrap_or(row);
+        let recent = self
+            .checkpoints
+            .back()
+            .filter(|_| !row.after_port && !self.count.is_multiple_of(CHECKPOINT_ROWS));
+        Begin {
+            time: last.time,
+            ship: recent.map_or_else(|| self.ship(last), |recent| recent.begin.ship.clone()),
+            row: last.clone(),
+            in_port: row.after_port,
+        }
+    }
+
+    /// Returns the ship by all hypotheses.
+    pub(super) fn ship(&self, row: &Row) -> ShipState {
+        let best = self.best();
+        let plausible = self
+            .bank
+            .iter()
+            .filter(|h| h.log_weight() > best - NEGLIGIBLE);
+        let weighed: Vec<(f64, ShipState)> = plausible
+            .map(|h| {
+                (
+                    (h.log_weight() - best).exp(),
+                    ShipState::from_filter(&h.filter, row),
+                )
+            })
+            .collect();
+        let (weights, states): (Vec<f64>, Vec<ShipState>) = weighed.into_iter().unzip();
+        ShipState::mixed(&states, &weights)
+    }
+
+    /// Returns the ship after the last row, if there was one.
+    pub(crate) fn current_ship(&self) -> Option<ShipState> {
+        self.rows.back().map(|row| self.ship(row))
+    }
+
+    fn keep_checkpoint(&mut self, row: &Row) {
+        let begin = self.begin(row);
+        let time = begin.time;
+        if let Some(old) = self.checkpoints.len().checked_sub(RECENT_ROWS)
+            && let Some(checkpoint) = self.checkpoints.get(old)
+            && !(checkpoint.begin.in_port || checkpoint.after.is_multiple_of(CHECKPOINT_ROWS))
+        {
+            self.checkpoints.remove(old);
+        }
+        self.checkpoints.push_back(Checkpoint {
+            after: self.count,
+            time,
+            lead: self.bank[0].clone(),
+            sums: self.sums,
+            begin,
+        });
+    }
+
+    fn read_all(&mut self, row: &Row) -> Tracked {
+        let levels = *self.learning.levels();
+        let usual = Transition::to(row, &levels);
+        let mut leads = None;
+        let best = self.best();
+        let mut wild = Vec::new();
+        for (i, hypothesis) in self.bank.iter_mut().enumerate() {
+            let before = hypothesis.clone();
+            let is_plausible = hypothesis.log_weight() > best - 5.0;
+            let read = hypothesis.read(row, &levels, &usual);
+            if is_plausible && read.teaches() && hypothesis.learns_the_ship() {
+                wild.push(before.after_wild(self.count, row, &levels, &usual));
+            }
+            let before = before.filter.log_likelihood;
+            if i == 0 {
+                let gained = hypothesis.filter.log_likelihood - before;
+                leads = Some((read, gained));
+            }
+        }
+        self.bank.extend(wild);
+        let (read, gained) = leads.expect("the bank is never empty");
+        let learns = self.is_settled();
+        self.learning.read(row, gained, learns);
+        self.sums.add(row, &read);
+        Tracked { read }
+    }
+
+    /// Returns true while the lead is alone in what it supposes.
+    fn is_settled(&self) -> bool {
+        let lead = &self.bank[0];
+        let best = lead.log_weight();
+        lead.lasting().all(Kind::changes_deviation)
+            && self.bank[1..].iter().all(|other| {
+                other.events.len() == lead.events.len() || other.log_weight() < best - 3.0
+            })
+    }
+
+    fn suppose_endings(&mut self, row: &Row) {
+        let begin = self.begin(row);
+        let spacing_s = END_ROWS as f64 * row.seconds.clamp(60.0, 3600.0);
+        let best = self.best();
+        let mut ended: Vec<Hypothesis> = Vec::new();
+        for hypothesis in &self.bank {
+            if hypothesis.log_weight() > best - 6.0 {
+                ended.extend(hypothesis.endings(&begin, spacing_s));
+            }
+        }
+        self.bank.extend(ended);
+    }
+
+    pub(super) fn best(&self) -> f64 {
+        let weights = self.bank.iter().map(Hypothesis::log_weight);
+        weights.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Returns the levels learnt.
+    pub(crate) fn levels(&self) -> &Levels {
+        self.learning.levels()
+    }
+}
