@@ -10,15 +10,15 @@ mod trial;
 #[path = "../tests/fleet_prior/world.rs"]
 mod world;
 
-use trial::{Tally, trial};
+use trial::{Tally, Trial, trial};
 
 fn main() {
     let fleets = std::env::args().nth(1);
     let fleets = fleets.map_or(400, |n| n.parse().expect("the number of fleets"));
-    println!("Coverage in %; half-width of the far band in degrees, without and with the fleet.");
-    println!(
-        "spread sisters | like: region near  far (alone)  band     | unlike: region near  far  band"
-    );
+    println!("Coverage in %: of the class's 95 % region, of the whole prior's, and after a short");
+    println!("voyage of the band at the own place and far away (without the fleet); half-width");
+    println!("of the far band, degrees, without and with the fleet.");
+    println!("spread sisters | ship like the class | ship unlike it");
     for induced in [0.1, 0.3, 0.5, 1.0] {
         for sisters in [2, 3, 5, 10, 20] {
             let Trial { like, unlike } = trial(fleets, sisters, induced);
@@ -31,12 +31,11 @@ fn main() {
     }
 }
 
-use trial::Trial;
-
 fn row(t: &Tally) -> String {
     let percent = |x: f64| format!("{:5.1}", 100.0 * x);
     format!(
-        "{} {} {} ({}) {:.2} {:.2}",
+        "{} {} {} {} ({}) {:.2} {:.2}",
+        percent(t.class_region),
         percent(t.region),
         percent(t.near),
         percent(t.far),

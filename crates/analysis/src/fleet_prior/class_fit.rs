@@ -22,12 +22,17 @@ const SPREADS: usize = 16;
 const LIKE_BEFORE: f64 = 9.0;
 const UNLIKE_BEFORE: f64 = 1.0;
 
+/// Part of a class's probability that a newcomer begins with. A short voyage cannot tell a
+/// ship unlike the class from one like it, and a band too narrow is worse than one too wide:
+/// by Monte Carlo the most at which a ship at large keeps an honest band (docs/science.md).
+const NEWCOMER_SHARE: f64 = 0.25;
+
 /// Rounds after which spreads and memberships no longer move by 1 %.
 const ROUNDS: usize = 8;
 
 /// Distribution of a new vessel of the class.
 pub(super) struct ClassFit {
-    /// Probability that a vessel is like the class.
+    /// Probability with which a newcomer begins as one of the class.
     pub(super) weight: f64,
     /// Mean of a vessel that is.
     pub(super) mean: Vector,
@@ -41,11 +46,14 @@ pub(super) fn fit(ships: &[ShipEvidence]) -> ClassFit {
     let mut state = State {
         ships: ships.iter().map(ShipEvidence::likelihood).collect(),
         membership: vec![1.0; ships.len()],
+        spreads: [[1.0 / SPREADS as f64; SPREADS]; PARAMETERS],
         variance: Vector::from_element(0.25),
     };
     for _ in 0..ROUNDS {
         for j in 0..PARAMETERS {
-            state.variance[j] = state.spread_of(j).expected_variance();
+            let spread = state.spread_of(j);
+            state.variance[j] = spread.expected_variance();
+            state.spreads[j] = spread.probability;
         }
         state.membership = state.memberships();
     }
@@ -57,6 +65,8 @@ struct State {
     ships: Vec<Likelihood>,
     /// Probability of each vessel to belong to the class.
     membership: Vec<f64>,
+    /// Probability of each spread, by ratio.
+    spreads: [[f64; SPREADS]; PARAMETERS],
     /// Variance of the class in each ratio.
     variance: Vector,
 }
@@ -77,6 +87,7 @@ struct Spread {
 }
 
 impl State {
+    /// Returns the share of vessels that are like the class.
     fn weight(&self) -> f64 {
         let like: f64 = self.membership.iter().sum();
         let all = self.membership.len() as f64;
@@ -114,8 +125,7 @@ impl State {
             let covariance = cholesky(class.information).inverse();
             mean[g] = (covariance * class.score)[j];
             mean_variance[g] = covariance[(j, j)];
-            // Every spread is as likely before, and the grid is even in its logarithm.
-            log_density[g] = class.log_evidence + grid(g).ln();
+            log_density[g] = class.log_evidence + self.spread_before(j, g).ln();
         }
         let largest = log_density.iter().copied().fold(f64::MIN, f64::max);
         let density = log_density.map(|x| (x - largest).exp());
@@ -125,6 +135,16 @@ impl State {
             mean,
             mean_variance,
         }
+    }
+
+    /// Returns the probability of a spread of ratio `j` by the other ratios of its kind: as
+    /// one of them spreads, or any other spread, which counts as one of them.
+    fn spread_before(&self, j: usize, g: usize) -> f64 {
+        let permanent = |k: usize| matches!(k, 0 | 2);
+        let kind = (0..PARAMETERS).filter(|&k| k != j && permanent(k) == permanent(j));
+        // Every spread is as likely before, and the grid is even in its logarithm.
+        let all: f64 = (0..SPREADS).map(grid).sum();
+        grid(g) / all + kind.map(|k| self.spreads[k][g]).sum::<f64>()
     }
 
     /// Returns each vessel's probability to belong to the class that the others make.
@@ -153,7 +173,7 @@ impl State {
             covariance[(j, j)] = alone.max(covariance[(j, j)] + grid(0).powi(2));
         }
         ClassFit {
-            weight: self.weight(),
+            weight: NEWCOMER_SHARE * self.weight(),
             mean,
             covariance,
         }

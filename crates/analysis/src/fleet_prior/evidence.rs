@@ -12,6 +12,9 @@ use serde::{Deserialize, Serialize};
 /// Least information that counts, in units of the population's: less is rounding.
 const LEAST_INFORMATION: f64 = 1e-3;
 
+/// Most information that can be: a standard deviation of 0.05 nT.
+const MOST_INFORMATION: f64 = 1e9;
+
 /// Decimal places of the stored numbers, which JSON then carries unchanged.
 const PLACES: i32 = 6;
 
@@ -43,8 +46,8 @@ impl TryFrom<Unchecked> for ShipEvidence {
         let symmetric = information == information.transpose();
         // Rounding may have left an eigenvalue just below zero.
         let shifted = information + Matrix::identity() * LEAST_INFORMATION;
-        let finite = read.score.iter().all(|h| h.is_finite());
-        if !(symmetric && finite && shifted.cholesky().is_some()) {
+        let possible = is_possible(&information, &Vector::from(read.score));
+        if !(symmetric && possible && shifted.cholesky().is_some()) {
             let vessel = read.vessel;
             return Err(FleetPriorError::NoCovariance { vessel });
         }
@@ -83,7 +86,7 @@ impl ShipEvidence {
         let values = model.parameters_over_lambda.to_array();
         let mean = Vector::from_fn(|j, _| values[j] / POPULATION_SD[j]);
         let score = posterior * mean - prior * fitted_with.mean_in_population_units();
-        if !score.iter().all(|h| h.is_finite()) {
+        if !is_possible(&posterior, &score) {
             return Err(no_covariance());
         }
         let Some(likelihood) = positive_part(posterior - prior, score) else {
@@ -162,11 +165,12 @@ fn ratios_information(covariance: &Covariance) -> Option<Matrix> {
         SMatrix::<f64, 8, 8>::from_fn(|i, j| f64::midpoint(covariance[i][j], covariance[j][i]));
     all.cholesky()?;
     let ratios = Matrix::from_fn(|i, j| all[(i, j)] / (POPULATION_SD[i] * POPULATION_SD[j]));
-    let information = ratios.cholesky()?.inverse();
-    information
-        .iter()
-        .all(|x| x.is_finite())
-        .then_some(information)
+    Some(ratios.cholesky()?.inverse())
+}
+
+fn is_possible(information: &Matrix, score: &Vector) -> bool {
+    let all = information.iter().chain(score.iter());
+    all.into_iter().all(|x| x.abs() <= MOST_INFORMATION)
 }
 
 /// Returns the part of a likelihood in the directions of which the data know something; none

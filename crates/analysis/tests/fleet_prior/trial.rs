@@ -7,28 +7,28 @@ use crate::world::{
 use binnacle_analysis::fleet_prior::{Class, FleetPrior, ShipEvidence, ShipPrior};
 use binnacle_compass::time::Timestamp;
 
-pub fn when() -> Timestamp {
+pub(crate) fn when() -> Timestamp {
     Timestamp::parse("2026-11-01T00:00:00Z").expect("a time")
 }
 
-pub fn sisters() -> Class {
+pub(crate) fn sisters() -> Class {
     Class::Sisters("Alpha".into())
 }
 
-pub fn evidence(vessel: &str, posterior: &Normal) -> ShipEvidence {
+pub(crate) fn evidence(vessel: &str, posterior: &Normal) -> ShipEvidence {
     let population = &ShipPrior::population().components[0];
     ShipEvidence::new(vessel, "a hash", &posterior.model(), population).expect("evidence")
 }
 
 /// The fleet's prior of so many like sisters, a newcomer like them, and a ship unlike them;
 /// the latter two as "like" and "unlike".
-pub struct Fleet {
-    pub like: Truth,
-    pub unlike: Truth,
-    pub prior: FleetPrior,
+pub(crate) struct Fleet {
+    pub(crate) like: Truth,
+    pub(crate) unlike: Truth,
+    pub(crate) prior: FleetPrior,
 }
 
-pub fn fleet(sisters_known: usize, induced: f64, dice: &mut Dice) -> Fleet {
+pub(crate) fn fleet(sisters_known: usize, induced: f64, dice: &mut Dice) -> Fleet {
     let class = ShipClass::new(induced, dice);
     let mut ships = Vec::new();
     for i in 0..sisters_known {
@@ -45,7 +45,7 @@ pub fn fleet(sisters_known: usize, induced: f64, dice: &mut Dice) -> Fleet {
     }
 }
 
-pub fn mixture(prior: &ShipPrior) -> Mixture {
+pub(crate) fn mixture(prior: &ShipPrior) -> Mixture {
     let each = prior.components.iter();
     Mixture(
         each.map(|c| (c.weight, Normal::of(&c.mean, &c.covariance)))
@@ -55,21 +55,22 @@ pub fn mixture(prior: &ShipPrior) -> Mixture {
 
 /// Sums over ships: shares after [`Tally::mean`].
 #[derive(Default)]
-pub struct Tally {
+pub(crate) struct Tally {
     ships: f64,
-    pub region: f64,
-    pub near: f64,
-    pub far: f64,
-    pub far_width: f64,
-    pub far_width_alone: f64,
-    pub far_alone: f64,
+    pub(crate) class_region: f64,
+    pub(crate) region: f64,
+    pub(crate) near: f64,
+    pub(crate) far: f64,
+    pub(crate) far_width: f64,
+    pub(crate) far_width_alone: f64,
+    pub(crate) far_alone: f64,
 }
 
 impl Tally {
     /// Adds a ship after a short voyage in one sea.
-    pub fn add(&mut self, truth: &Truth, prior: &ShipPrior, dice: &mut Dice) {
+    pub(crate) fn add(&mut self, truth: &Truth, prior: &ShipPrior, dice: &mut Dice) {
         let prior = mixture(prior);
-        let voyage = Voyage::sail(truth, &[MEDITERRANEAN], 8, 0.6, dice);
+        let voyage = Voyage::sail(truth, &[MEDITERRANEAN], 24, 0.6, dice);
         let (posterior, alone) = (
             prior.after(&voyage),
             mixture(&ShipPrior::population()).after(&voyage),
@@ -77,6 +78,7 @@ impl Tally {
         let Band { held, width } = posterior.band(truth, FAR);
         self.ships += 1.0;
         self.region += f64::from(u8::from(prior.region_holds(truth, dice)));
+        self.class_region += f64::from(u8::from(prior.class_region_holds(truth)));
         self.near += posterior.band(truth, MEDITERRANEAN).held;
         self.far += held;
         self.far_width += width;
@@ -85,10 +87,11 @@ impl Tally {
         self.far_alone += alone.held;
     }
 
-    pub fn mean(&self) -> Tally {
+    pub(crate) fn mean(&self) -> Tally {
         let n = self.ships;
         Tally {
             ships: n,
+            class_region: self.class_region / n,
             region: self.region / n,
             near: self.near / n,
             far: self.far / n,
@@ -100,12 +103,12 @@ impl Tally {
 }
 
 /// A newcomer like its class, and one unlike it, over `fleets` fleets.
-pub struct Trial {
-    pub like: Tally,
-    pub unlike: Tally,
+pub(crate) struct Trial {
+    pub(crate) like: Tally,
+    pub(crate) unlike: Tally,
 }
 
-pub fn trial(fleets: u64, sisters_known: usize, induced: f64) -> Trial {
+pub(crate) fn trial(fleets: u64, sisters_known: usize, induced: f64) -> Trial {
     let (mut like, mut unlike) = (Tally::default(), Tally::default());
     for seed in 0..fleets {
         let dice = &mut Dice::new(seed);

@@ -6,11 +6,11 @@
 
 use binnacle_compass::model::{Covariance, Model, Parameters};
 use nalgebra::{DMatrix, DVector};
-use rand::{Rng, RngExt, SeedableRng};
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// Spread of ships at large: bx, χ13, by, χ23, χ11−χ22, χ12, χ21; µT or 1.
-pub const POPULATION: [f64; 7] = [1.5, 0.012, 1.5, 0.006, 0.02, 0.008, 0.008];
+pub(crate) const POPULATION: [f64; 7] = [1.5, 0.012, 1.5, 0.006, 0.02, 0.008, 0.008];
 /// Spread of the constant, degrees.
 const CONSTANT_SD: f64 = 0.9;
 /// nT in one unit of each number here.
@@ -18,14 +18,14 @@ const NT: [f64; 8] = [1000.0, 1.0, 1000.0, 1.0, 1.0, 1.0, 1.0, 1.0];
 
 /// The earth's field, µT: horizontal, and down.
 #[derive(Clone, Copy)]
-pub struct Sea {
-    pub h: f64,
-    pub z: f64,
+pub(crate) struct Sea {
+    pub(crate) h: f64,
+    pub(crate) z: f64,
 }
 
-pub const MEDITERRANEAN: Sea = Sea { h: 26.0, z: 37.0 };
+pub(crate) const MEDITERRANEAN: Sea = Sea { h: 26.0, z: 37.0 };
 /// Forty degrees of latitude to the south.
-pub const FAR: Sea = Sea { h: 30.0, z: -10.0 };
+pub(crate) const FAR: Sea = Sea { h: 30.0, z: -10.0 };
 const SEAS: [Sea; 6] = [
     MEDITERRANEAN,
     FAR,
@@ -36,7 +36,7 @@ const SEAS: [Sea; 6] = [
 ];
 
 /// The seven ratios and the constant.
-pub type Truth = DVector<f64>;
+pub(crate) type Truth = DVector<f64>;
 
 /// Slopes of the deviation, degrees, by ratio and constant.
 fn slopes(sea: Sea, heading_deg: f64) -> [f64; 8] {
@@ -57,13 +57,13 @@ fn slopes(sea: Sea, heading_deg: f64) -> [f64; 8] {
 
 /// A normal distribution of ratios and constant.
 #[derive(Clone)]
-pub struct Normal {
-    pub mean: DVector<f64>,
-    pub covariance: DMatrix<f64>,
+pub(crate) struct Normal {
+    pub(crate) mean: DVector<f64>,
+    pub(crate) covariance: DMatrix<f64>,
 }
 
 impl Normal {
-    pub fn population() -> Normal {
+    pub(crate) fn population() -> Normal {
         let mut variance = DVector::from_element(8, CONSTANT_SD * CONSTANT_SD);
         for (v, sd) in variance.iter_mut().zip(POPULATION) {
             *v = sd * sd;
@@ -75,7 +75,7 @@ impl Normal {
     }
 
     /// A component of the product's prior, with the constant's beside it.
-    pub fn of(mean: &[f64; 7], covariance: &[[f64; 7]; 7]) -> Normal {
+    pub(crate) fn of(mean: &[f64; 7], covariance: &[[f64; 7]; 7]) -> Normal {
         let mut out = Normal::population();
         for i in 0..7 {
             out.mean[i] = mean[i] / NT[i];
@@ -86,7 +86,7 @@ impl Normal {
         out
     }
 
-    pub fn log_density(&self, at: &DVector<f64>) -> f64 {
+    pub(crate) fn log_density(&self, at: &DVector<f64>) -> f64 {
         let factor = self.covariance.clone().cholesky().expect("a covariance");
         let z = factor
             .l()
@@ -97,7 +97,7 @@ impl Normal {
     }
 
     /// The product's model with this posterior.
-    pub fn model(&self) -> Model {
+    pub(crate) fn model(&self) -> Model {
         let values = std::array::from_fn(|j| self.mean[j] * NT[j]);
         let covariance: Covariance = std::array::from_fn(|i| {
             std::array::from_fn(|j| self.covariance[(i, j)] * NT[i] * NT[j])
@@ -116,7 +116,7 @@ impl Normal {
 }
 
 /// Headings that a ship steered in some seas, and the deviations read, degrees.
-pub struct Voyage {
+pub(crate) struct Voyage {
     slopes: DMatrix<f64>,
     read: DVector<f64>,
     noise_sd: f64,
@@ -124,7 +124,7 @@ pub struct Voyage {
 
 impl Voyage {
     /// Reads the deviation on `headings` even headings in each sea, within `noise_sd` each.
-    pub fn sail(
+    pub(crate) fn sail(
         truth: &Truth,
         seas: &[Sea],
         headings: usize,
@@ -147,7 +147,7 @@ impl Voyage {
     }
 
     /// Posterior, and the log-likelihood of the whole voyage under the prior.
-    pub fn posterior(&self, prior: &Normal) -> (Normal, f64) {
+    pub(crate) fn posterior(&self, prior: &Normal) -> (Normal, f64) {
         let n = self.read.len();
         let gain = &prior.covariance * self.slopes.transpose();
         let innovation = Normal {
@@ -170,10 +170,10 @@ impl Voyage {
 }
 
 /// Weighted normal distributions.
-pub struct Mixture(pub Vec<(f64, Normal)>);
+pub(crate) struct Mixture(pub(crate) Vec<(f64, Normal)>);
 
 impl Mixture {
-    pub fn after(&self, voyage: &Voyage) -> Mixture {
+    pub(crate) fn after(&self, voyage: &Voyage) -> Mixture {
         let each: Vec<(f64, Normal)> = self
             .0
             .iter()
@@ -200,7 +200,7 @@ impl Mixture {
     }
 
     /// Whether the region of greatest density that holds 95 % holds the truth.
-    pub fn region_holds(&self, truth: &Truth, dice: &mut Dice) -> bool {
+    pub(crate) fn region_holds(&self, truth: &Truth, dice: &mut Dice) -> bool {
         const DRAWS: usize = 400;
         let at_truth = self.log_density(truth);
         let lower = (0..DRAWS)
@@ -210,6 +210,17 @@ impl Mixture {
             })
             .count();
         lower as f64 >= 0.05 * DRAWS as f64
+    }
+
+    /// Whether the first component's own 95 % region of the seven ratios holds the truth.
+    pub(crate) fn class_region_holds(&self, truth: &Truth) -> bool {
+        /// 95 % of χ² with seven degrees of freedom.
+        const CHI_SQUARE: f64 = 14.067;
+        let (_, class) = &self.0[0];
+        let ratios = class.covariance.view((0, 0), (7, 7)).into_owned();
+        let off = (truth - &class.mean).rows(0, 7).into_owned();
+        let solved = ratios.cholesky().expect("a covariance").solve(&off);
+        off.dot(&solved) <= CHI_SQUARE
     }
 
     fn draw(&self, dice: &mut Dice) -> DVector<f64> {
@@ -232,7 +243,7 @@ impl Mixture {
 
     /// Share of 24 headings on which the 95 % band of the deviation, by the mixture's mean
     /// and covariance, holds the truth, and the mean half-width of that band, degrees.
-    pub fn band(&self, truth: &Truth, sea: Sea) -> Band {
+    pub(crate) fn band(&self, truth: &Truth, sea: Sea) -> Band {
         let mean: DVector<f64> = self.0.iter().map(|(w, p)| &p.mean * *w).sum();
         let mut covariance = DMatrix::zeros(8, 8);
         for (w, p) in &self.0 {
@@ -255,14 +266,14 @@ impl Mixture {
 }
 
 #[derive(Clone, Copy)]
-pub struct Band {
-    pub held: f64,
-    pub width: f64,
+pub(crate) struct Band {
+    pub(crate) held: f64,
+    pub(crate) width: f64,
 }
 
 /// A class of ships: its mean, and its spread as a share of the population's. Ships of all
 /// classes together have the population's spread.
-pub struct ShipClass {
+pub(crate) struct ShipClass {
     mean: [f64; 7],
     share: [f64; 7],
 }
@@ -270,7 +281,7 @@ pub struct ShipClass {
 impl ShipClass {
     /// A class whose induced ratios spread `induced` of the population's, and whose
     /// permanent ones spread as the population's.
-    pub fn new(induced: f64, dice: &mut Dice) -> ShipClass {
+    pub(crate) fn new(induced: f64, dice: &mut Dice) -> ShipClass {
         let share = std::array::from_fn(|j| if matches!(j, 0 | 2) { 1.0 } else { induced });
         let mean = std::array::from_fn(|j| {
             let share: f64 = share[j];
@@ -279,7 +290,7 @@ impl ShipClass {
         ShipClass { mean, share }
     }
 
-    pub fn ship(&self, dice: &mut Dice) -> Truth {
+    pub(crate) fn ship(&self, dice: &mut Dice) -> Truth {
         DVector::from_fn(8, |j, _| match self.mean.get(j) {
             Some(mean) => mean + POPULATION[j] * self.share[j] * dice.normal(),
             None => CONSTANT_SD * dice.normal(),
@@ -288,37 +299,37 @@ impl ShipClass {
 }
 
 /// A ship at large.
-pub fn any_ship(dice: &mut Dice) -> Truth {
+pub(crate) fn any_ship(dice: &mut Dice) -> Truth {
     let sd = |j: usize| POPULATION.get(j).copied().unwrap_or(CONSTANT_SD);
     DVector::from_fn(8, |j, _| sd(j) * dice.normal())
 }
 
 /// Posterior, under the population's prior, of a ship that sailed one to three seas.
-pub fn known_by_now(truth: &Truth, dice: &mut Dice) -> Normal {
-    let seas: Vec<Sea> = (0..dice.below(3) + 1)
+pub(crate) fn known_by_now(truth: &Truth, dice: &mut Dice) -> Normal {
+    let seas: Vec<Sea> = (0..dice.below(4) + 1)
         .map(|_| SEAS[dice.below(SEAS.len())])
         .collect();
-    let voyage = Voyage::sail(truth, &seas, 12, 0.6, dice);
+    let voyage = Voyage::sail(truth, &seas, 24, 0.5, dice);
     voyage.posterior(&Normal::population()).0
 }
 
 /// Numbers at random, the same for the same seed.
-pub struct Dice(ChaCha8Rng);
+pub(crate) struct Dice(ChaCha8Rng);
 
 impl Dice {
-    pub fn new(seed: u64) -> Dice {
+    pub(crate) fn new(seed: u64) -> Dice {
         Dice(ChaCha8Rng::seed_from_u64(seed))
     }
 
-    pub fn even(&mut self) -> f64 {
+    pub(crate) fn even(&mut self) -> f64 {
         self.0.random()
     }
 
-    pub fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         self.0.random_range(0..n)
     }
 
-    pub fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.even()).ln()).sqrt();
         radius * (std::f64::consts::TAU * self.even()).cos()
     }
