@@ -1,7 +1,8 @@
 //! Mean and spread of a class, by Bayes' rule.
 //!
-//! All in units of the population's standard deviations. The class's mean has the
-//! population's distribution before any vessel is known. The spread of each ratio has a
+//! All in units of the population's standard deviations. The population's
+//! variance is that of the classes' means and of the vessels within a class together, so a
+//! class about which nothing is known yet is the population. The spread of each ratio has a
 //! grid of values, each weighted by its likelihood with the mean integrated out, the other
 //! spreads standing at their expectations; a few rounds settle them. Each vessel counts by
 //! the probability that it belongs to the class at all.
@@ -17,6 +18,10 @@ const SPREAD_RANGE: [f64; 2] = [0.05, 1.25];
 /// Values of the spread: a step of a fourth, as well as twenty vessels know it.
 const SPREADS: usize = 16;
 
+/// Least variance of the mean of classes, in units of the population's: a class of unlike
+/// ships may still have a mean of its own.
+const LEAST_MEAN_VARIANCE: f64 = 0.2;
+
 /// Vessels like and unlike their class that experience is worth before any is known: one in
 /// ten is unlike.
 const LIKE_BEFORE: f64 = 9.0;
@@ -25,7 +30,7 @@ const UNLIKE_BEFORE: f64 = 1.0;
 /// Part of a class's probability that a newcomer begins with. A short voyage cannot tell a
 /// ship unlike the class from one like it, and a band too narrow is worse than one too wide:
 /// by Monte Carlo the most at which a ship at large keeps an honest band (docs/science.md).
-const NEWCOMER_SHARE: f64 = 0.25;
+const NEWCOMER_SHARE: f64 = 0.2;
 
 /// Rounds after which spreads and memberships no longer move by 1 %.
 const ROUNDS: usize = 8;
@@ -96,16 +101,17 @@ impl State {
 
     /// Returns the posterior of the class's mean when the class has `variance`.
     fn class_mean(&self, variance: &Vector) -> ClassMean {
-        let mut information = Matrix::identity();
+        let before = variance.map(|within| 1.0 / (1.0 - within).max(LEAST_MEAN_VARIANCE));
+        let mut information = Matrix::from_diagonal(&before);
         let mut score = Vector::zeros();
-        let mut log_evidence = 0.0;
+        let mut log_evidence: f64 = before.iter().map(|x| 0.5 * x.ln()).sum();
         for (ship, &membership) in self.ships.iter().zip(&self.membership) {
             let seen = of_the_mean(ship, variance);
             information += seen.information * membership;
             score += seen.score * membership;
             log_evidence += seen.log_evidence * membership;
         }
-        let factor = cholesky(information);
+        let factor = cholesky(&information);
         log_evidence += 0.5 * score.dot(&factor.solve(&score));
         log_evidence -= factor.l().diagonal().iter().map(|d| d.ln()).sum::<f64>();
         ClassMean {
@@ -122,7 +128,7 @@ impl State {
         for g in 0..SPREADS {
             variance[j] = grid(g).powi(2);
             let class = self.class_mean(&variance);
-            let covariance = cholesky(class.information).inverse();
+            let covariance = cholesky(&class.information).inverse();
             mean[g] = (covariance * class.score)[j];
             mean_variance[g] = covariance[(j, j)];
             log_density[g] = class.log_evidence + self.spread_before(j, g).ln();
@@ -154,7 +160,7 @@ impl State {
         let spread = Matrix::from_diagonal(&self.variance);
         let one = |(ship, &membership): (&Likelihood, &f64)| {
             let own = of_the_mean(ship, &self.variance);
-            let others = cholesky(class.information - own.information * membership).inverse();
+            let others = cholesky(&(class.information - own.information * membership)).inverse();
             let mean = others * (class.score - own.score * membership);
             let like = ship.log_marginal(&mean, &(others + spread));
             let unlike = ship.log_marginal(&Vector::zeros(), &Matrix::identity());
@@ -166,16 +172,19 @@ impl State {
 
     fn predict(&self) -> ClassFit {
         let class = self.class_mean(&self.variance);
-        let mut covariance = cholesky(class.information).inverse();
+        let mut covariance = cholesky(&class.information).inverse();
         let mean = covariance * class.score;
         for j in 0..PARAMETERS {
             let alone = self.spread_of(j).variance_about(mean[j]);
             covariance[(j, j)] = alone.max(covariance[(j, j)] + grid(0).powi(2));
         }
+        let like: f64 = self.membership.iter().sum();
         ClassFit {
             weight: NEWCOMER_SHARE * self.weight(),
             mean,
-            covariance,
+            // A spread known from few vessels has tails that a normal distribution lacks: by
+            // Student's and Fisher's 95 %, about one part in so many vessels.
+            covariance: covariance * (1.0 + 1.0 / like.max(1.0)),
         }
     }
 }
@@ -201,7 +210,7 @@ impl Spread {
 fn of_the_mean(ship: &Likelihood, variance: &Vector) -> ClassMean {
     let sd = variance.map(f64::sqrt);
     let root = Matrix::from_diagonal(&sd);
-    let inner = cholesky(Matrix::identity() + root * ship.information * root);
+    let inner = cholesky(&(Matrix::identity() + root * ship.information * root));
     // Λ − Λ T^½ (1 + T^½ Λ T^½)⁻¹ T^½ Λ, which is (Λ⁻¹ + T)⁻¹ where Λ has an inverse.
     let gain = ship.information * root;
     let inverse = inner.inverse();
@@ -219,6 +228,7 @@ fn grid(g: usize) -> f64 {
     least * (greatest / least).powf(g as f64 / (SPREADS - 1) as f64)
 }
 
-fn cholesky(matrix: Matrix) -> nalgebra::Cholesky<f64, nalgebra::Const<PARAMETERS>> {
-    nalgebra::Cholesky::new(matrix).expect("a unit matrix plus information is positive definite")
+fn cholesky(matrix: &Matrix) -> nalgebra::Cholesky<f64, nalgebra::Const<PARAMETERS>> {
+    nalgebra::Cholesky::new(*matrix)
+        .expect("a prior's information plus the data's is positive definite")
 }

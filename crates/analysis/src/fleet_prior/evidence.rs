@@ -89,7 +89,7 @@ impl ShipEvidence {
         if !is_possible(&posterior, &score) {
             return Err(no_covariance());
         }
-        let Some(likelihood) = positive_part(posterior - prior, score) else {
+        let Some(likelihood) = positive_part(&(posterior - prior), &score) else {
             let vessel = vessel.to_owned();
             return Err(FleetPriorError::NothingLearnt { vessel });
         };
@@ -176,8 +176,8 @@ fn is_possible(information: &Matrix, score: &Vector) -> bool {
 /// Returns the part of a likelihood in the directions of which the data know something; none
 /// when there are none. Nonlinearity and a prior's tail leave the difference of two
 /// informations a little below zero where the data know nothing.
-fn positive_part(information: Matrix, score: Vector) -> Option<Likelihood> {
-    let eigen = information.symmetric_eigen();
+fn positive_part(information: &Matrix, score: &Vector) -> Option<Likelihood> {
+    let eigen = information.clone_owned().symmetric_eigen();
     let mut known = Likelihood {
         information: Matrix::zeros(),
         score: Vector::zeros(),
@@ -189,7 +189,7 @@ fn positive_part(information: Matrix, score: Vector) -> Option<Likelihood> {
     {
         if value > LEAST_INFORMATION {
             known.information += direction * direction.transpose() * value;
-            known.score += direction * direction.dot(&score);
+            known.score += direction * direction.dot(score);
         }
     }
     (known.information.trace() > 0.0).then_some(known)

@@ -153,7 +153,12 @@ impl FleetPrior {
     pub fn prior_for(&self, vessel: &str) -> Result<ShipPrior, FleetPriorError> {
         let others = self.without(vessel)?;
         let fit = class_fit::fit(&others.ships);
-        Ok(ShipPrior::of_class(&fit, others.basis()))
+        let class = PriorComponent::from_population_units(fit.weight, &fit.mean, &fit.covariance);
+        let at_large = PriorComponent::population(1.0 - class.weight);
+        Ok(ShipPrior {
+            basis: Some(others.basis()),
+            components: vec![class, at_large],
+        })
     }
 
     fn basis(&self) -> Basis {

@@ -1,6 +1,5 @@
 //! Prior of one vessel: a mixture of its class and of ships at large.
 
-use super::class_fit::ClassFit;
 use super::{Class, Matrix, Vector};
 use crate::estimate::POPULATION_SD;
 use binnacle_compass::ship::PARAMETERS;
@@ -64,26 +63,22 @@ impl ShipPrior {
             components: vec![PriorComponent::population(1.0)],
         }
     }
-
-    pub(super) fn of_class(fit: &ClassFit, basis: Basis) -> ShipPrior {
-        let weight = decimal(fit.weight, 6);
-        let like = PriorComponent::from_population_units(weight, &fit.mean, &fit.covariance);
-        ShipPrior {
-            basis: Some(basis),
-            components: vec![like, PriorComponent::population(decimal(1.0 - weight, 6))],
-        }
-    }
 }
 
 impl PriorComponent {
-    fn population(weight: f64) -> PriorComponent {
+    /// Returns ships at large with some weight.
+    pub(super) fn population(weight: f64) -> PriorComponent {
         PriorComponent::from_population_units(weight, &Vector::zeros(), &Matrix::identity())
     }
 
-    fn from_population_units(weight: f64, mean: &Vector, covariance: &Matrix) -> PriorComponent {
+    pub(super) fn from_population_units(
+        weight: f64,
+        mean: &Vector,
+        covariance: &Matrix,
+    ) -> PriorComponent {
         let sd = POPULATION_SD;
         PriorComponent {
-            weight,
+            weight: decimal(weight, 6),
             mean: std::array::from_fn(|j| decimal(mean[j] * sd[j], PLACES[j])),
             covariance: std::array::from_fn(|i| {
                 std::array::from_fn(|j| {

@@ -48,8 +48,8 @@ fn slopes(sea: Sea, heading_deg: f64) -> [f64; 8] {
         c / sea.h,
         c * sea.z / sea.h,
         s2 / 2.0,
-        (c2 - 1.0) / 2.0,
-        (c2 + 1.0) / 2.0,
+        f64::midpoint(c2, -1.0),
+        f64::midpoint(c2, 1.0),
         1.0_f64.to_radians(),
     ]
     .map(f64::to_degrees)
@@ -199,7 +199,7 @@ impl Mixture {
             .ln()
     }
 
-    /// Whether the region of greatest density that holds 95 % holds the truth.
+    /// True if the truth lies in the region of greatest density that holds 95 %.
     pub(crate) fn region_holds(&self, truth: &Truth, dice: &mut Dice) -> bool {
         const DRAWS: usize = 400;
         let at_truth = self.log_density(truth);
@@ -212,7 +212,7 @@ impl Mixture {
         lower as f64 >= 0.05 * DRAWS as f64
     }
 
-    /// Whether the first component's own 95 % region of the seven ratios holds the truth.
+    /// True if the truth lies in the first component's own 95 % region of the seven ratios.
     pub(crate) fn class_region_holds(&self, truth: &Truth) -> bool {
         /// 95 % of χ² with seven degrees of freedom.
         const CHI_SQUARE: f64 = 14.067;
@@ -306,7 +306,7 @@ pub(crate) fn any_ship(dice: &mut Dice) -> Truth {
 
 /// Posterior, under the population's prior, of a ship that sailed one to three seas.
 pub(crate) fn known_by_now(truth: &Truth, dice: &mut Dice) -> Normal {
-    let seas: Vec<Sea> = (0..dice.below(4) + 1)
+    let seas: Vec<Sea> = (0..=dice.below(4))
         .map(|_| SEAS[dice.below(SEAS.len())])
         .collect();
     let voyage = Voyage::sail(truth, &seas, 24, 0.5, dice);
