@@ -1,4 +1,4 @@
-//! The table of docs/science.md, §12: the fleet's prior for new ships like and unlike their
+//! The table of docs/science.md, §13: the fleet's prior for new ships like and unlike their
 //! class, by the class's spread and the number of sisters.
 //!
 //! `cargo run --release -p binnacle-analysis --example fleet_prior_study [FLEETS]`

@@ -5,7 +5,7 @@
 //! drawn about the class's mean with the class's spread, and its own headings showed them
 //! with its model's covariance. Mean and spread of each ratio follow from the vessels, so
 //! that the data decide how much a class says of it: correctors and builder's magnetism
-//! differ between sisters, soft iron less. The equations are in docs/science.md, §12.
+//! differ between sisters, soft iron less. The equations are in docs/science.md, §13.
 //!
 //! Invariants:
 //! - a prior for a vessel that is in the class itself is made of the others alone, to the
