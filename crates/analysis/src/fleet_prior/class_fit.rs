@@ -28,8 +28,8 @@ const LIKE_BEFORE: f64 = 9.0;
 const UNLIKE_BEFORE: f64 = 1.0;
 
 /// Part of a class's probability that a newcomer begins with. A short voyage cannot tell a
-/// ship unlike the class from one like it, and a band too narrow is worse than one too wide:
-/// by Monte Carlo the most at which a ship at large keeps an honest band (docs/science.md, §13).
+/// ship unlike the class from one like it, and a band too narrow is worse than one too wide: the
+/// value was chosen by Monte Carlo, so that a ship at large keeps 93 % (docs/science.md, §13).
 const NEWCOMER_SHARE: f64 = 0.2;
 
 /// Rounds after which spreads and memberships no longer move by 1 %.
