@@ -12,6 +12,8 @@ mod robust_scale;
 pub mod estimate;
 pub mod fit;
 
+pub mod fleet_prior;
+
 pub mod change;
 
 pub mod analyse;
