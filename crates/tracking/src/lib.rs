@@ -5,4 +5,4 @@ mod report;
 mod state_space;
 mod weighing;
 
-pub use report::analyse;
+pub use report::{Input, analyse};

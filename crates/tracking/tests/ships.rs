@@ -6,15 +6,28 @@
 #[path = "../../analysis/tests/voyages/mod.rs"]
 mod voyages;
 
+use binnacle_analysis::fleet_prior::ShipPrior;
+use binnacle_compass::azimuth::{Azimuth, AzimuthForm, AzimuthKind};
+use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::result::{Analysis, Cause, Change};
 use binnacle_compass::sample::Sample;
 use binnacle_compass::settings::AnalysisSettings;
-use binnacle_tracking::analyse;
+use binnacle_tracking::{Input, analyse};
 use voyages::fleet::{Event, Log, Name, Plan, sail_log};
 use voyages::{Variety, predicted, true_deviation};
 
 fn run(samples: &[Sample]) -> Analysis {
-    analyse(samples, &[], &AnalysisSettings::default())
+    run_with(samples, &[])
+}
+
+fn run_with(samples: &[Sample], azimuths: &[Azimuth]) -> Analysis {
+    analyse(&Input {
+        samples,
+        logbook: &[],
+        azimuths,
+        prior: &ShipPrior::population(),
+        settings: AnalysisSettings::default(),
+    })
 }
 
 fn sail(seed: u64, event: Event, days: f64) -> Log {
@@ -117,4 +130,56 @@ fn order_and_repetition_change_nothing() {
     shuffled.extend_from_slice(&log.samples[..500]);
     let (a, b) = (run(&log.samples), run(&shuffled));
     assert_eq!(a, b);
+}
+
+/// Returns a transit taken at a sample's time by an observer who is off by `off_deg`.
+fn transit(log: &Log, sample: &Sample, off_deg: f64) -> Azimuth {
+    let here = field(FieldModel::Igrf14, sample.position, 0.0, sample.time).unwrap();
+    let compass_deg = sample.compass.degrees();
+    let error_deg = here.declination().degrees_east()
+        + true_deviation(&log.truth, compass_deg, here.h_nt(), here.z_nt);
+    Azimuth::new(AzimuthForm {
+        time: sample.time,
+        lat: sample.position.lat_deg(),
+        lon: sample.position.lon_deg(),
+        kind: AzimuthKind::Transit,
+        compass_heading_deg: compass_deg,
+        compass_bearing_deg: Some((50.0 - error_deg + off_deg).rem_euclid(360.0)),
+        gyro_heading_deg: None,
+        gyro_bearing_deg: None,
+        horizon: None,
+        height_of_eye_m: None,
+        name: Some("two lights in line".to_owned()),
+        true_bearing_deg: Some(50.0),
+        altitude_deg: None,
+        confirmed: true,
+    })
+    .unwrap()
+}
+
+/// Returns half the width of the band at the ship's place, root mean square over headings.
+fn half_width_deg(analysis: &Analysis, log: &Log) -> f64 {
+    let model = analysis.current_epoch().unwrap().model.as_ref().unwrap();
+    let variances = (0..36).map(|k| {
+        let (_, se) = predicted(model, 10.0 * f64::from(k), log.truth.h_nt, log.truth.z_nt);
+        se * se
+    });
+    1.96 * (variances.sum::<f64>() / 36.0).sqrt()
+}
+
+#[test]
+fn azimuths_halve_a_settled_band_and_it_still_holds() {
+    let log = sail(6, Event::Nothing, 40.0);
+    let every = log.samples.len() / 24;
+    // Off by turns to either side, 0.7 degrees root mean square.
+    let taken: Vec<Azimuth> = (0..20_usize)
+        .map(|k| {
+            let off = if k % 2 == 0 { 0.7 } else { -0.7 };
+            transit(&log, &log.samples[(k + 4) * every - 1], off)
+        })
+        .collect();
+    let (without, with) = (run(&log.samples), run_with(&log.samples, &taken));
+    let (wide, narrow) = (half_width_deg(&without, &log), half_width_deg(&with, &log));
+    assert!(narrow < 0.6 * wide, "{narrow} of {wide}");
+    assert!(held(&with, &log) > 0.7, "{}", held(&with, &log));
 }

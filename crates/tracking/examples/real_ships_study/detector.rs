@@ -3,6 +3,7 @@
 use crate::voyages::Variety;
 use crate::voyages::fleet::{Event, Log, Plan};
 use binnacle_analysis::analyse::analyse;
+use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::Analysis;
 use binnacle_compass::sample::Sample;
@@ -13,8 +14,22 @@ use binnacle_compass::time::Timestamp;
 pub(crate) type Detector = fn(&[Sample], &[LogbookEntry], &AnalysisSettings) -> Analysis;
 
 /// Detectors and their names on the command line.
-pub(crate) const DETECTORS: [(&str, Detector); 2] =
-    [("old", analyse), ("new", binnacle_tracking::analyse)];
+pub(crate) const DETECTORS: [(&str, Detector); 2] = [("old", analyse), ("new", by_hypotheses)];
+
+/// Analyses by weighed hypotheses, with nothing known of sisters.
+fn by_hypotheses(
+    samples: &[Sample],
+    logbook: &[LogbookEntry],
+    settings: &AnalysisSettings,
+) -> Analysis {
+    binnacle_tracking::analyse(&binnacle_tracking::Input {
+        samples,
+        logbook,
+        azimuths: &[],
+        prior: &ShipPrior::population(),
+        settings: *settings,
+    })
+}
 
 /// Returns the detector of a name.
 pub(crate) fn find(name: &str) -> Result<Detector, String> {

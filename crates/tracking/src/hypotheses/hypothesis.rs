@@ -4,11 +4,14 @@ use super::kinds::{Ending, Kind};
 use crate::state_space::filter::{Filter, Innovation, Marginal};
 use crate::state_space::levels::Levels;
 use crate::state_space::row::Row;
-use crate::state_space::scalar::{Scalar, Silent, deviation, difference};
+use crate::state_space::scalar::{
+    Scalar, Silent, deviation, difference, sighted_deviation, sighted_gyro,
+};
 use crate::state_space::ship_state::ShipState;
 use crate::state_space::states::{ALIGNMENT, BX, BY, GYRO, STATES};
 use crate::state_space::transition::Transition;
 use binnacle_compass::angle::wrap_180;
+use binnacle_compass::azimuth::Azimuth;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 use binnacle_compass::time::Timestamp;
@@ -202,6 +205,21 @@ impl Hypothesis {
         self.filter.log_likelihood -= 0.5 * read.loss();
         self.read_held(row);
         read
+    }
+
+    /// Reads an azimuth in the circumstances of the last row.
+    pub(crate) fn read_azimuth(&mut self, azimuth: &Azimuth, row: &Row) {
+        let mut loss = 0.0;
+        if !self.has(Kind::StuckCard) {
+            let scalar = sighted_deviation(row, &self.filter.mean, azimuth);
+            loss += self.filter.update(&scalar).loss();
+        }
+        if let Some(scalar) = sighted_gyro(row, &self.filter.mean, azimuth)
+            && !self.has(Kind::StuckGyro)
+        {
+            loss += self.filter.update(&scalar).loss();
+        }
+        self.filter.log_likelihood -= 0.5 * loss.min(WORST_LOSS);
     }
 
     /// Returns true if an instrument is stuck without which the row shows no deviation.

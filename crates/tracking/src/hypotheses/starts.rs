@@ -9,52 +9,92 @@ use crate::state_space::states::{
     ALIGNMENT, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW, HEEL, LAG, LIST, LIST_NT,
     REFLECTION, RETENTION, SATELLITE, SCHULER, SPEED, STATES, SWING, VARIATION,
 };
+use binnacle_analysis::estimate::POPULATION_SD;
+use binnacle_analysis::fleet_prior::{PriorComponent, ShipPrior};
 use binnacle_compass::ship::PARAMETERS;
 
-/// Guess of where the compass's zero is: standard deviation, degrees, and probability. The
-/// last guess is where the first row has it.
-const ALIGNMENTS: [(f64, f64); 3] = [(0.6, 0.80), (4.0, 0.17), (8.0, 0.03)];
-/// Guess of the ship's size over the population's, and probability.
-const SIZES: [(f64, f64); 2] = [(1.0, 0.85), (2.5, 0.15)];
-/// Guess of the gyro's speed error left in the reading, and probability.
-const SPEED_ERRORS: [(f64, f64); 2] = [(0.0, 0.85), (1.0, 0.15)];
+/// Guess of a value: standard deviation and probability.
+#[derive(Clone, Copy, Debug)]
+struct Guess {
+    size: f64,
+    probability: f64,
+}
 
-/// Returns the starting hypotheses.
-pub(crate) fn starts(row: &Row, levels: &Levels, reference_sd_deg: f64) -> Vec<Hypothesis> {
-    let mut starts = Vec::new();
-    for (guess, (alignment_sd, by_alignment)) in ALIGNMENTS.into_iter().enumerate() {
-        for (size, by_size) in SIZES {
-            for (speed, by_speed) in SPEED_ERRORS {
-                if row.gyro_deg.is_none() && speed != 0.0 {
+const fn guess(size: f64, probability: f64) -> Guess {
+    Guess { size, probability }
+}
+
+/// Guesses of where the compass's zero is: standard deviation in degrees. The last is about
+/// where the first row has it.
+const ALIGNMENTS: [Guess; 3] = [guess(0.6, 0.80), guess(4.0, 0.17), guess(8.0, 0.03)];
+/// Guesses of the ship's size over that of the prior.
+const SIZES: [Guess; 2] = [guess(1.0, 0.85), guess(2.5, 0.15)];
+/// Guesses of the gyro's speed error that is left in the reading.
+const SPEED_ERRORS: [Guess; 2] = [guess(0.0, 0.85), guess(1.0, 0.15)];
+
+/// Returns the starting hypotheses: each guess with each other, for each component of what is
+/// known of ships like her.
+pub(crate) fn starts(
+    row: &Row,
+    levels: &Levels,
+    reference_sd_deg: f64,
+    prior: &ShipPrior,
+) -> Vec<Hypothesis> {
+    let plain = deviations(levels, reference_sd_deg / row.cos_lat.max(0.3));
+    let mut starts: Vec<Hypothesis> = Vec::new();
+    for component in &prior.components {
+        for size in SIZES {
+            for speed in SPEED_ERRORS {
+                if row.gyro_deg.is_none() && speed.size != 0.0 {
                     continue;
                 }
-                let mut mean = [0.0; STATES];
-                let mut sd = deviations(levels, reference_sd_deg / row.cos_lat.max(0.3));
-                for sd in &mut sd[..PARAMETERS] {
-                    *sd *= size;
+                let mut filter = of_component(component, size.size, &plain);
+                filter.mean[SPEED] = speed.size;
+                let probability = component.weight * size.probability * speed.probability;
+                for (nth, alignment) in ALIGNMENTS.into_iter().enumerate() {
+                    let is_last = nth + 1 == ALIGNMENTS.len();
+                    let filter =
+                        with_alignment(&filter, alignment.size, is_last.then_some(row), levels);
+                    starts.push(Hypothesis {
+                        filter,
+                        events: Vec::new(),
+                        log_prior: f64::ln(probability * alignment.probability),
+                        start: starts.len(),
+                        wild: None,
+                        is_amid: false,
+                    });
                 }
-                mean[SPEED] = speed;
-                sd[ALIGNMENT] = alignment_sd;
-                if guess + 1 == ALIGNMENTS.len() {
-                    mean[ALIGNMENT] = deviation(row, &mean, levels, Silent::default()).innovation;
-                }
-                starts.push(Hypothesis {
-                    filter: Filter::new(mean, &sd),
-                    events: Vec::new(),
-                    log_prior: f64::ln(by_alignment * by_size * by_speed),
-                    start: starts.len(),
-                    wild: None,
-                    is_amid: false,
-                });
             }
         }
     }
     starts
 }
 
+/// Returns a filter before the first row, its ship drawn from a component of the prior.
+fn of_component(component: &PriorComponent, size: f64, plain: &[f64; STATES]) -> Filter {
+    let mut filter = Filter::new([0.0; STATES], plain);
+    for i in 0..PARAMETERS {
+        filter.mean[i] = component.mean[i] / POPULATION_SD[i];
+        for j in 0..PARAMETERS {
+            filter.covariance[i][j] =
+                size * size * component.covariance[i][j] / (POPULATION_SD[i] * POPULATION_SD[j]);
+        }
+    }
+    filter
+}
+
+/// Returns the filter with a guess of the alignment: about zero, or about where a row has it.
+fn with_alignment(filter: &Filter, sd_deg: f64, at: Option<&Row>, levels: &Levels) -> Filter {
+    let mut filter = filter.clone();
+    filter.covariance[ALIGNMENT][ALIGNMENT] = sd_deg * sd_deg;
+    if let Some(row) = at {
+        filter.mean[ALIGNMENT] = deviation(row, &filter.mean, levels, Silent::default()).innovation;
+    }
+    filter
+}
+
 fn deviations(levels: &Levels, reference_sd_deg: f64) -> [f64; STATES] {
     let mut sd = [0.0; STATES];
-    sd[..PARAMETERS].fill(1.0);
     sd[RETENTION] = 0.7;
     sd[RETENTION + 1] = 0.7;
     sd[HEEL] = 1.0;
@@ -69,8 +109,8 @@ fn deviations(levels: &Levels, reference_sd_deg: f64) -> [f64; STATES] {
     sd[SCHULER] = levels.at(Level::Schuler);
     sd[SCHULER + 1] = levels.at(Level::Schuler);
     sd[SPEED] = 0.1;
-    sd[GYRO_HEADING] = 0.1;
-    sd[GYRO_HEADING + 1] = 0.1;
+    sd[GYRO_HEADING] = 0.15;
+    sd[GYRO_HEADING + 1] = 0.15;
     sd[SATELLITE] = reference_sd_deg;
     sd[REFLECTION] = levels.at(Level::Reflection);
     sd[LAG] = 0.03;

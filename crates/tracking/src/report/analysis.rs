@@ -13,7 +13,9 @@ use binnacle_analysis::analyse::reading::{Reading, readings};
 use binnacle_analysis::estimate::{POPULATION_SD, weight};
 use binnacle_analysis::fit::Observation;
 use binnacle_analysis::fit::check_headings;
+use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_compass::angle::{Deviation, wrap_180};
+use binnacle_compass::azimuth::Azimuth;
 use binnacle_compass::coverage::coverage;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::model::{Caution, FromData, Identifiable, Model, Quality};
@@ -35,15 +37,33 @@ const SAMPLE_DEG: f64 = 0.3;
 /// Least number of samples of a model.
 const NEEDED_SAMPLES: usize = 12;
 
+/// Input of an analysis of one compass.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    /// Samples in any order, with repetitions or without.
+    pub samples: &'a [Sample],
+    /// Logbook of the vessel.
+    pub logbook: &'a [LogbookEntry],
+    /// Azimuths taken with this compass.
+    pub azimuths: &'a [Azimuth],
+    /// Prior knowledge of the vessel.
+    pub prior: &'a ShipPrior,
+    /// Settings of the operator.
+    pub settings: AnalysisSettings,
+}
+
 /// Analyses all samples of one compass.
-pub fn analyse(
-    samples: &[Sample],
-    logbook: &[LogbookEntry],
-    settings: &AnalysisSettings,
-) -> Analysis {
+pub fn analyse(input: &Input<'_>) -> Analysis {
+    let Input {
+        samples,
+        logbook,
+        settings,
+        ..
+    } = *input;
+    let settings = &settings;
     let mut readings = readings(samples, logbook, settings);
     mark_alongside(&mut readings);
-    let mut voyage = Voyage::new(logbook, settings);
+    let mut voyage = Voyage::new(input);
     for reading in &mut readings {
         voyage.read(reading);
     }
@@ -62,6 +82,8 @@ struct Voyage {
     tracker: Tracker,
     /// Coming notes of the logbook, the next last.
     notes: Vec<Note>,
+    /// Coming azimuths, the next last.
+    azimuths: Vec<Azimuth>,
     boundaries: Vec<LoggedBoundary>,
     observations: Vec<Observation>,
     pairs: u64,
@@ -78,7 +100,10 @@ struct Note {
 }
 
 impl Voyage {
-    fn new(logbook: &[LogbookEntry], settings: &AnalysisSettings) -> Voyage {
+    fn new(input: &Input<'_>) -> Voyage {
+        let logbook = input.logbook;
+        let mut azimuths = input.azimuths.to_vec();
+        azimuths.sort_by_key(|azimuth| std::cmp::Reverse(azimuth.time()));
         let begins = logbook.iter().map(|entry| Note {
             at: entry.from,
             kind: entry.kind,
@@ -94,13 +119,14 @@ impl Voyage {
         let mut notes: Vec<Note> = begins.chain(ends).collect();
         notes.sort_by(|a, b| b.partial_cmp(a).unwrap_or(std::cmp::Ordering::Equal));
         Voyage {
-            tracker: Tracker::new(settings.reference_constant_sd_deg),
+            tracker: Tracker::new(input.settings.reference_constant_sd_deg, input.prior),
             notes,
+            azimuths,
             boundaries: Vec::new(),
             observations: Vec::new(),
             pairs: 0,
             squares: 0.0,
-            settings: *settings,
+            settings: input.settings,
         }
     }
 
@@ -128,6 +154,14 @@ impl Voyage {
             return;
         };
         self.diagnose(reading, &tracked);
+        while self
+            .azimuths
+            .last()
+            .is_some_and(|azimuth| azimuth.time() <= time)
+        {
+            let azimuth = self.azimuths.pop().expect("there is a last one");
+            self.tracker.read_azimuth(&azimuth);
+        }
     }
 
     fn note(&mut self, note: Note) {

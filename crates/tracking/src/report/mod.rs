@@ -3,4 +3,4 @@
 mod analysis;
 mod detected_changes;
 
-pub use analysis::analyse;
+pub use analysis::{Input, analyse};

@@ -6,7 +6,7 @@ use binnacle_analysis::fit::Observation;
 use binnacle_analysis::gyro_speed_error::northerly_speed_error_deg;
 use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation, wrap_180};
 use binnacle_compass::position::Position;
-use binnacle_compass::sample::Sample;
+use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
 use std::f64::consts::TAU;
@@ -14,6 +14,11 @@ use std::f64::consts::TAU;
 const DAY_S: f64 = 86_400.0;
 /// Gap between rows that counts as a port call, seconds.
 const PORT_GAP_S: f64 = 2.5 * 3600.0;
+/// Readings before the step of an instrument is judged, share of them that lie on it, and the
+/// distance within which one does.
+const FEWEST_READINGS: u32 = 10;
+const COARSE_SHARE: f64 = 0.95;
+const SAME_DIGIT: f64 = 1e-3;
 
 /// Row of readings.
 #[derive(Clone, Debug)]
@@ -25,6 +30,10 @@ pub(crate) struct Row {
     pub(crate) miles: f64,
     /// Turn since the row before, degrees.
     pub(crate) turned_deg: f64,
+    /// True if another instrument gives the gyro's heading, or the satellite compass's, than in
+    /// the last row that had one.
+    pub(crate) new_gyro: bool,
+    pub(crate) new_satellite: bool,
     /// True if the ship was in port since the row before.
     pub(crate) after_port: bool,
     pub(crate) compass_deg: f64,
@@ -50,6 +59,10 @@ pub(crate) struct Row {
 #[derive(Clone, Debug)]
 pub(crate) struct RowMaker {
     scatter: Scatter,
+    /// Steps in which compass, gyro and satellite compass are read.
+    digits: [Digits; 3],
+    /// Instruments that gave the headings of gyro and satellite compass last.
+    sources: [Option<SourceId>; 2],
     last: Option<Last>,
     /// Horizontal field in ship axes with each memory, nT.
     lagged_nt: [[f64; 2]; 2],
@@ -76,6 +89,8 @@ impl RowMaker {
     pub(crate) fn new() -> RowMaker {
         RowMaker {
             scatter: Scatter::default(),
+            digits: [Digits::default(); 3],
+            sources: [None; 2],
             last: None,
             lagged_nt: [[0.0; 2]; 2],
         }
@@ -106,6 +121,9 @@ impl RowMaker {
             field_nt,
         });
         let observation = observation(placed, gyro_deg.or(satellite_deg)?);
+        let new_gyro = is_new(&mut self.sources[0], sample.gyro_source);
+        let new_satellite = is_new(&mut self.sources[1], sample.satellite_source);
+        let [white, difference_white] = self.white(sample, &observation);
         let phase = sample.time.micros() as f64 / 1e6 / DAY_S + sample.position.lon_deg() / 360.0;
         let (sin, cos) = (TAU * phase.rem_euclid(1.0)).sin_cos();
         Some(Row {
@@ -113,6 +131,8 @@ impl RowMaker {
             seconds,
             miles: last.map_or(0.0, |last| miles(last.position, sample.position)),
             turned_deg: last.map_or(0.0, |last| wrap_180(heading_deg - last.heading_deg)),
+            new_gyro,
+            new_satellite,
             after_port: seconds > PORT_GAP_S,
             compass_deg: sample.compass.degrees(),
             gyro_deg,
@@ -128,9 +148,28 @@ impl RowMaker {
             lagged_nt: self.lagged_nt,
             roll_rad: sample.roll_deg.map(f64::to_radians),
             rate_of_turn_deg_min: sample.rate_of_turn_deg_min.unwrap_or(0.0),
-            white: self.scatter.white(&observation),
-            difference_white: WhiteNoise::of_difference(&observation),
+            white,
+            difference_white,
         })
+    }
+
+    /// Returns the noise that is new in the deviation and in the references' difference, the
+    /// instruments' digits in it.
+    fn white(&mut self, sample: &Sample, observation: &Observation) -> [WhiteNoise; 2] {
+        let headings = [
+            Some(sample.compass.degrees()),
+            sample.gyro.map(TrueHeading::degrees),
+            sample.satellite.map(TrueHeading::degrees),
+        ];
+        for (digits, heading) in self.digits.iter_mut().zip(headings) {
+            digits.note(heading);
+        }
+        let [compass, gyro, satellite] = self.digits.map(Digits::variance);
+        let mut white = self.scatter.white(observation);
+        white.scatter += compass + gyro.max(satellite);
+        let mut difference = WhiteNoise::of_difference(observation);
+        difference.scatter += gyro + satellite;
+        [white, difference]
     }
 
     /// Lets the retained field follow the induced one, on the mean of both headings.
@@ -144,6 +183,50 @@ impl RowMaker {
             }
         }
     }
+}
+
+/// Steps in which an instrument's headings are read, found from the readings.
+#[derive(Clone, Copy, Debug, Default)]
+struct Digits {
+    readings: u32,
+    /// Readings in whole degrees, and in halves.
+    whole: u32,
+    halves: u32,
+}
+
+impl Digits {
+    fn note(&mut self, heading_deg: Option<f64>) {
+        let Some(heading_deg) = heading_deg else {
+            return;
+        };
+        let is_multiple = |x: f64| u32::from((x - x.round()).abs() < SAME_DIGIT);
+        self.readings += 1;
+        self.whole += is_multiple(heading_deg);
+        self.halves += is_multiple(2.0 * heading_deg);
+    }
+
+    /// Returns the variance of the rounding, degrees squared: even over a step.
+    fn variance(self) -> f64 {
+        let most = f64::from(self.readings) * COARSE_SHARE;
+        let step_deg = if self.readings < FEWEST_READINGS {
+            0.0
+        } else if f64::from(self.whole) >= most {
+            1.0
+        } else if f64::from(self.halves) >= most {
+            0.5
+        } else {
+            0.0
+        };
+        step_deg * step_deg / 12.0
+    }
+}
+
+/// Returns true if a source is named that is not the last one, and keeps it.
+fn is_new(last: &mut Option<SourceId>, now: Option<SourceId>) -> bool {
+    let Some(now) = now else {
+        return false;
+    };
+    last.replace(now).is_some_and(|last| last != now)
 }
 
 /// Returns the sample as the scatter takes it.

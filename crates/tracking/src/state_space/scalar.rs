@@ -9,6 +9,7 @@ use super::states::{
 };
 use binnacle_analysis::estimate::{Direction, Needle, POPULATION_SD};
 use binnacle_compass::angle::wrap_180;
+use binnacle_compass::azimuth::Azimuth;
 use binnacle_compass::model::Parameters;
 use binnacle_compass::ship::PARAMETERS;
 
@@ -73,6 +74,35 @@ pub(crate) fn deviation(
         white
     };
     deviation_by(row, mean, &Reference::mixed(row, share), variance)
+}
+
+/// Returns the deviation that an azimuth showed, in the circumstances of a row: no reference
+/// has a part in it, so that it alone tells the compass's alignment.
+pub(crate) fn sighted_deviation(row: &Row, mean: &[f64; STATES], azimuth: &Azimuth) -> Scalar {
+    let compass_deg = azimuth.compass_heading().degrees();
+    let result = azimuth.result();
+    let row = Row {
+        compass_deg,
+        ..row.clone()
+    };
+    let sight = Reference {
+        heading_deg: compass_deg + result.deviation_deg.degrees_east(),
+        load: [0.0; STATES],
+    };
+    deviation_by(&row, mean, &sight, result.standard_error_deg.powi(2))
+}
+
+/// Returns the gyro's error that an azimuth showed; none without the gyro's reading.
+pub(crate) fn sighted_gyro(row: &Row, mean: &[f64; STATES], azimuth: &Azimuth) -> Option<Scalar> {
+    let result = azimuth.result();
+    let error_deg = -result.gyro_error_deg?.degrees_east();
+    let heading_deg = result.true_heading_deg.degrees() - row.variation_deg;
+    let load = Reference::gyro(row, heading_deg).load;
+    Some(Scalar {
+        innovation: wrap_180(error_deg - dot(&load, mean)),
+        load,
+        variance: result.standard_error_deg.powi(2),
+    })
 }
 
 /// Returns the gyro's share of the reference heading.

@@ -3,8 +3,8 @@
 use super::levels::{Level, Levels};
 use super::row::Row;
 use super::states::{
-    ANOMALY, BX, BY, FRICTION, GYRO_SLOW, LIST, LIST_NT, REFLECTION, SCHULER, SETTLING, STATES,
-    SWING, VARIATION,
+    ANOMALY, BX, BY, FRICTION, GYRO, GYRO_SLOW, LIST, LIST_NT, REFLECTION, SATELLITE, SCHULER,
+    SETTLING, STATES, SWING, VARIATION,
 };
 use binnacle_analysis::estimate::{
     COMPASS_SWING_S, POPULATION_SD, SATELLITE_S, SLOW_GYRO_S, VARIATION_NM, swing_over,
@@ -29,9 +29,11 @@ const SETTLED_S: f64 = 900.0;
 /// Memory and standard deviation of a local anomaly as the ship passes it, where H is usual.
 const ANOMALY_S: f64 = 3600.0;
 const ANOMALY_DEG: f64 = 2.5;
-/// Step and drift of the induced parameters over the population, for a step or drift of
-/// (bx, by) of the population's size.
-const INDUCED_SHARE: f64 = 0.5;
+/// Drift of the induced parameters over the population, for a drift of (bx, by) of the
+/// population's size.
+const INDUCED_SHARE: f64 = 0.3;
+/// Constant error of one reference against another of its kind, degrees.
+const NEW_REFERENCE_DEG: f64 = 1.0;
 
 /// Transition over one step.
 #[derive(Clone, Debug)]
@@ -84,7 +86,12 @@ impl Transition {
         t.fade(FRICTION, friction, levels.at(Level::Friction));
         t.drift(levels.at(Level::Drift).powi(2) * seconds / DRIFT_S);
         if row.after_port {
-            t.drift(levels.at(Level::PortStep).powi(2));
+            t.step(levels.at(Level::PortStep).powi(2), 1.0);
+        }
+        for (state, is_new) in [(GYRO, row.new_gyro), (SATELLITE, row.new_satellite)] {
+            if is_new {
+                t.added[state] += NEW_REFERENCE_DEG * NEW_REFERENCE_DEG;
+            }
         }
         t.swing(seconds, turned > KICK_DEG, levels.at(Level::Schuler));
         t
@@ -96,14 +103,20 @@ impl Transition {
         self.fade(VARIATION, seconds / memory_s, sd_deg);
     }
 
-    /// Adds a random step of (bx, by), nT squared, with its induced part.
+    /// Adds a random drift of (bx, by), nT squared, with a little of the induced parameters.
     pub(crate) fn drift(&mut self, variance_nt2: f64) {
+        self.step(variance_nt2, INDUCED_SHARE);
+    }
+
+    /// Adds a random step of (bx, by), nT squared, and of the induced parameters as a share of
+    /// that in units of the population.
+    fn step(&mut self, variance_nt2: f64, induced_share: f64) {
         let share = variance_nt2 / POPULATION_SD[BX].powi(2);
         for j in 0..PARAMETERS {
             let part = if j == BX || j == BY {
                 1.0
             } else {
-                INDUCED_SHARE * INDUCED_SHARE
+                induced_share * induced_share
             };
             self.added[j] += part * share;
         }

@@ -4,6 +4,7 @@ use crate::hypotheses::hypothesis::Hypothesis;
 use crate::state_space::levels::{LEVELS, Level, Levels};
 use crate::state_space::row::Row;
 use crate::state_space::transition::Transition;
+use binnacle_compass::azimuth::Azimuth;
 
 /// Change of a level's logarithm by which the slope is taken.
 const NUDGE: f64 = 0.25;
@@ -38,6 +39,13 @@ impl Learning {
     /// Begins anew from another filter.
     pub(crate) fn restart(&mut self, lead: &Hypothesis) {
         self.nudged = vec![lead.clone(); LEVELS];
+    }
+
+    /// Reads an azimuth that the lead has read.
+    pub(crate) fn read_azimuth(&mut self, azimuth: &Azimuth, row: &Row) {
+        for hypothesis in &mut self.nudged {
+            hypothesis.read_azimuth(azimuth, row);
+        }
     }
 
     /// Reads the row by which the lead gained some log likelihood.

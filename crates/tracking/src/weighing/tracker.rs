@@ -10,6 +10,8 @@ use crate::state_space::levels::Levels;
 use crate::state_space::row::{Placed, Row, RowMaker};
 use crate::state_space::ship_state::ShipState;
 use crate::state_space::transition::Transition;
+use binnacle_analysis::fleet_prior::ShipPrior;
+use binnacle_compass::azimuth::Azimuth;
 use std::collections::VecDeque;
 
 /// Rows that are kept, so that an event may be supposed among them: three days.
@@ -21,6 +23,8 @@ const RECENT_ROWS: usize = 12;
 /// Rows between looks for events, and for ends of events.
 const LOOK_ROWS: usize = 2;
 const END_ROWS: usize = 6;
+/// Greatest time between an azimuth and the row in whose circumstances it is read, seconds.
+const AZIMUTH_NEAR_S: f64 = 6.0 * 3600.0;
 /// Log weight below the best's from which a hypothesis is left out of the mixture.
 const NEGLIGIBLE: f64 = 7.0;
 
@@ -28,6 +32,7 @@ const NEGLIGIBLE: f64 = 7.0;
 pub(crate) struct Tracker {
     maker: RowMaker,
     reference_sd_deg: f64,
+    prior: ShipPrior,
     pub(crate) learning: Learning,
     /// Hypotheses; the first leads.
     pub(crate) bank: Vec<Hypothesis>,
@@ -48,10 +53,11 @@ pub(crate) struct Tracked {
 }
 
 impl Tracker {
-    pub(crate) fn new(reference_sd_deg: f64) -> Tracker {
+    pub(crate) fn new(reference_sd_deg: f64, prior: &ShipPrior) -> Tracker {
         Tracker {
             maker: RowMaker::new(),
             reference_sd_deg,
+            prior: prior.clone(),
             learning: Learning::new(),
             bank: Vec::new(),
             rows: VecDeque::new(),
@@ -68,7 +74,12 @@ impl Tracker {
     pub(crate) fn read(&mut self, placed: &Placed<'_>) -> Option<Tracked> {
         let row = self.maker.row(placed)?;
         if self.bank.is_empty() {
-            self.bank = starts(&row, self.learning.levels(), self.reference_sd_deg);
+            self.bank = starts(
+                &row,
+                self.learning.levels(),
+                self.reference_sd_deg,
+                &self.prior,
+            );
             self.learning.restart(&self.bank[0]);
         }
         self.keep_checkpoint(&row);
@@ -97,6 +108,21 @@ impl Tracker {
         self.prune();
         self.detect(placed.sample.time);
         Some(tracked)
+    }
+
+    /// Reads an azimuth after the last row. Returns false if none is near it in time.
+    pub(crate) fn read_azimuth(&mut self, azimuth: &Azimuth) -> bool {
+        let Some(row) = self.rows.back().cloned() else {
+            return false;
+        };
+        if azimuth.time().seconds_since(row.time).abs() > AZIMUTH_NEAR_S {
+            return false;
+        }
+        for hypothesis in &mut self.bank {
+            hypothesis.read_azimuth(azimuth, &row);
+        }
+        self.learning.read_azimuth(azimuth, &row);
+        true
     }
 
     /// Returns the circumstances of what begins between the last row and the next.
