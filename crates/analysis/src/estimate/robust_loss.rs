@@ -8,7 +8,7 @@ const FULL_WEIGHT_SD: f64 = 2.5;
 const GROSS_ERROR_SD: f64 = 6.0;
 
 /// Returns the weight of an innovation by its square in standard deviations: 1 up to
-/// [`FULL_WEIGHT_SD`], then falling with the square, so that a wilder innovation moves the state
+/// `FULL_WEIGHT_SD`, then falling with the square, so that a wilder innovation moves the state
 /// less.
 pub fn weight(z_squared: f64) -> f64 {
     let bound = FULL_WEIGHT_SD * FULL_WEIGHT_SD;
@@ -19,7 +19,7 @@ pub fn weight(z_squared: f64) -> f64 {
     }
 }
 
-/// Returns the weight in a fit of many rows, which falls faster beyond [`GROSS_ERROR_SD`]: wild
+/// Returns the weight in a fit of many rows, which falls faster beyond `GROSS_ERROR_SD`: wild
 /// readings to one side add up. It is never 0, because a fit that began far off would stay
 /// there.
 pub(crate) fn batch_weight(z_squared: f64) -> f64 {
@@ -27,7 +27,7 @@ pub(crate) fn batch_weight(z_squared: f64) -> f64 {
 }
 
 /// Returns the loss whose slope is twice the weighted innovation, up to its value at
-/// [`GROSS_ERROR_SD`]: the levels describe the other rows, however wild a few are.
+/// `GROSS_ERROR_SD`: the levels describe the other rows, however wild a few are.
 pub fn robust_loss(z_squared: f64) -> f64 {
     let square = z_squared.min(GROSS_ERROR_SD * GROSS_ERROR_SD);
     let bound = FULL_WEIGHT_SD * FULL_WEIGHT_SD;
