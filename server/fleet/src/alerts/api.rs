@@ -8,6 +8,7 @@ use super::store::{self, Remark};
 use axum::extract::{FromRef, State as Shared};
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone, text};
 use binnacle_platform::ids::AlertId;
@@ -69,12 +70,13 @@ async fn find_alert(
 async fn acknowledge_alert(
     Shared(app): Shared<App>,
     writer: Writer,
+    request: RequestContext,
     Id(id): Id<AlertId>,
     ValidOrNone(acknowledgement): ValidOrNone<Acknowledgement>,
 ) -> Result<Json<Alert>> {
     let note = acknowledgement.note.filter(|note| !note.trim().is_empty());
     let note = note.map(|note| text("note", &note)).transpose()?;
-    let alert = change(&app, writer, id, note, ChangeKind::Acknowledged).await?;
+    let alert = change(&app, &request, writer, id, note, ChangeKind::Acknowledged).await?;
     if alert.state == State::Cleared {
         return Err(Error::Gone("this alert is cleared"));
     }
@@ -92,18 +94,20 @@ async fn acknowledge_alert(
 async fn clear_alert(
     Shared(app): Shared<App>,
     writer: Writer,
+    request: RequestContext,
     Id(id): Id<AlertId>,
     Valid(clearing): Valid<Clearing>,
 ) -> Result<Json<Alert>> {
     let reason = Some(text("reason", &clearing.reason)?);
     Ok(Json(
-        change(&app, writer, id, reason, ChangeKind::Cleared).await?,
+        change(&app, &request, writer, id, reason, ChangeKind::Cleared).await?,
     ))
 }
 
 /// Changes an alert in a person's name, if that changes anything.
 async fn change(
     app: &App,
+    request: &RequestContext,
     writer: Writer,
     id: AlertId,
     remark: Option<String>,
@@ -112,7 +116,7 @@ async fn change(
     let alert = store::must_find(&app.db, writer.operator, id).await?;
     let now = app.clock.now().into();
     let vessel = alert.vessel_id;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let remark = Remark {
         by: session::name_of(&mut tx, writer.user).await?,
         text: remark,

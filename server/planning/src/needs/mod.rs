@@ -12,6 +12,7 @@ mod prediction;
 pub use facts::Facts;
 pub use load::load_facts;
 pub use need::{Need, find_need};
+pub use over_limit_since::store_deviation_histories;
 
 use crate::schedule_settings;
 use axum::extract::{FromRef, State};
@@ -92,17 +93,4 @@ async fn list_page(
         items: listed.items,
         next: listed.next,
     }))
-}
-
-/// Stores the deviation histories that have changed.
-pub async fn store_deviation_histories(app: &App, facts: &[Facts]) -> Result<()> {
-    for facts in facts {
-        if let Some(history) = &facts.changed_history {
-            let mut tx = app.db.begin().await?;
-            over_limit_since::store_history(&mut tx, facts.vessel_id, facts.compass_id, history)
-                .await?;
-            tx.commit().await?;
-        }
-    }
-    Ok(())
 }

@@ -79,7 +79,12 @@ async fn audit_csv(
 ) -> Result<Response> {
     let selection = read_selection(auditor, filter)?;
     let head = stream::iter([Ok(Bytes::from(csv::head()))]);
-    let rest = stream::try_unfold((app, selection, Some(Uuid::max())), next_lines);
+    let all = Rest {
+        app,
+        selection,
+        before: Some(Uuid::max()),
+    };
+    let rest = stream::try_unfold(all, next_lines);
     let body = Body::from_stream(head.chain(rest));
     Ok(file("text/csv; charset=utf-8", "audit.csv", body))
 }
@@ -103,9 +108,20 @@ fn read_selection(auditor: Auditor, filter: Filter) -> Result<Selection> {
     })
 }
 
-type Rest = (App, Selection, Option<Uuid>);
+/// Rest of a download.
+struct Rest {
+    app: App,
+    selection: Selection,
+    /// Last line so far; none after the last of all.
+    before: Option<Uuid>,
+}
 
-async fn next_lines((app, selection, before): Rest) -> Result<Option<(Bytes, Rest)>> {
+async fn next_lines(rest: Rest) -> Result<Option<(Bytes, Rest)>> {
+    let Rest {
+        app,
+        selection,
+        before,
+    } = rest;
     let Some(before) = before else {
         return Ok(None);
     };
@@ -115,7 +131,14 @@ async fn next_lines((app, selection, before): Rest) -> Result<Option<(Bytes, Res
         Ok((Bytes::from(csv::lines(&found)?), next))
     };
     match lines.await {
-        Ok((lines, next)) => Ok(Some((lines, (app, selection, next)))),
+        Ok((lines, next)) => {
+            let rest = Rest {
+                app,
+                selection,
+                before: next,
+            };
+            Ok(Some((lines, rest)))
+        }
         Err(cause) => {
             error!(
                 error = format!("{cause:?}"),
