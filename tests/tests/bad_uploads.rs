@@ -10,7 +10,7 @@ use binnacle_compass::time::Timestamp;
 use binnacle_tests::{Engine, ServerProcess, eventually};
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::encode;
-use binnacle_wire::messages::{EnrolAnswer, EnrolRequest};
+use binnacle_wire::messages::{EnrolRequest, EnrolResponse};
 use reqwest::{Method, StatusCode};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -38,7 +38,7 @@ async fn enrol(server: &ServerProcess, name: &str) -> Result<Agent> {
         .json(&request)
         .send()
         .await?;
-    let answer: EnrolAnswer = answer.error_for_status()?.json().await?;
+    let answer: EnrolResponse = answer.error_for_status()?.json().await?;
     Ok(Agent {
         vessel,
         token: answer.token,

@@ -14,8 +14,8 @@ use anyhow::Context;
 use binnacle_wire::batch::StreamId;
 use binnacle_wire::downlink::{self, FORM, ONCE, card_tag};
 use binnacle_wire::messages::{
-    BoardAzimuthAnswer, Downlink, EnrolAnswer, EnrolRequest, LogbookAnswer, NewToken,
-    OpenStreamAnswer,
+    BoardAzimuthResponse, Downlink, EnrolRequest, EnrolResponse, LogbookResponse, NewToken,
+    OpenStreamResponse,
 };
 use reqwest::header::RETRY_AFTER;
 use reqwest::{RequestBuilder, Response, StatusCode, redirect};
@@ -116,7 +116,7 @@ impl ServerClient {
         &self,
         server: &str,
         code: &str,
-    ) -> Result<EnrolAnswer, RequestError> {
+    ) -> Result<EnrolResponse, RequestError> {
         let request = EnrolRequest {
             code: code.to_owned(),
             agent_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -153,7 +153,7 @@ impl ServerClient {
     pub(crate) async fn open_stream(&self, identity: &Identity) -> Result<StreamId, RequestError> {
         let url = format!("{}/api/v1/streams", identity.server);
         let request = self.http.post(url).bearer_auth(&identity.token);
-        let opened: OpenStreamAnswer = self.send(request).await?;
+        let opened: OpenStreamResponse = self.send(request).await?;
         Ok(opened.stream)
     }
 
@@ -182,7 +182,7 @@ impl ServerClient {
         &self,
         identity: &Identity,
         report: &StoredReport,
-    ) -> Result<LogbookAnswer, RequestError> {
+    ) -> Result<LogbookResponse, RequestError> {
         let url = format!("{}/api/v1/agents/logbook/{}", identity.server, report.id);
         let request = self.http.put(url).bearer_auth(&identity.token);
         self.send(request.json(&report.sent)).await
@@ -193,7 +193,7 @@ impl ServerClient {
         &self,
         identity: &Identity,
         azimuth: &SpooledAzimuth,
-    ) -> Result<BoardAzimuthAnswer, RequestError> {
+    ) -> Result<BoardAzimuthResponse, RequestError> {
         let url = format!("{}/api/v1/agents/azimuths/{}", identity.server, azimuth.id);
         let request = self.http.put(url).bearer_auth(&identity.token);
         self.send(request.json(&azimuth.sent)).await

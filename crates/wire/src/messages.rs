@@ -25,7 +25,8 @@ pub struct EnrolRequest {
 /// Everything the agent needs to send: the response to an enrolment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-pub struct EnrolAnswer {
+#[cfg_attr(feature = "openapi", schema(as = EnrolAnswer))]
+pub struct EnrolResponse {
     /// Bearer token; shown this once.
     pub token: String,
     /// A new stream, opened for this installation.
@@ -61,7 +62,8 @@ impl fmt::Debug for NewToken {
 /// An agent opens one when its spool was lost or restored from an old copy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-pub struct OpenStreamAnswer {
+#[cfg_attr(feature = "openapi", schema(as = OpenStreamAnswer))]
+pub struct OpenStreamResponse {
     /// The new stream.
     #[cfg_attr(feature = "openapi", schema(value_type = Uuid))]
     pub stream: StreamId,
@@ -230,7 +232,7 @@ pub struct LogbookReport {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "openapi", schema(as = BoardReportAnswer))]
-pub struct LogbookAnswer {
+pub struct LogbookResponse {
     /// The latest revision in the logbook.
     pub revision: u32,
     /// True when the entry was withdrawn, on board or in the office.
@@ -257,7 +259,8 @@ pub struct BoardAzimuth {
 /// The response to a [`BoardAzimuth`].
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-pub struct BoardAzimuthAnswer {
+#[cfg_attr(feature = "openapi", schema(as = BoardAzimuthAnswer))]
+pub struct BoardAzimuthResponse {
     /// True when it was withdrawn, on board or in the office.
     pub withdrawn: bool,
 }
@@ -282,14 +285,14 @@ mod tests {
     #[test]
     fn an_enrolment_reads_as_it_is_written() {
         assert_comes_back::<EnrolRequest>(&json!({"code": "K7QF-2M9X", "agent_version": "0.1.0"}));
-        assert_comes_back::<EnrolAnswer>(&json!({
+        assert_comes_back::<EnrolResponse>(&json!({
             "token": "secret",
             "stream": ID,
             "vessel_name": "Nao Victoria",
             "compass_name": "Standard compass",
             "server_time": "2026-11-21T07:00:00Z",
         }));
-        assert_comes_back::<OpenStreamAnswer>(&json!({ "stream": ID }));
+        assert_comes_back::<OpenStreamResponse>(&json!({ "stream": ID }));
     }
 
     #[test]
@@ -300,7 +303,7 @@ mod tests {
             "to": "2026-11-21T00:00:00Z", "cargo": "scrap", "hatch": "2", "port": "Bilbao",
             "note": "",
         }));
-        assert_comes_back::<LogbookAnswer>(&json!({ "revision": 2, "withdrawn": false }));
+        assert_comes_back::<LogbookResponse>(&json!({ "revision": 2, "withdrawn": false }));
     }
 
     #[test]
@@ -312,7 +315,7 @@ mod tests {
             "height_of_eye_m": null, "name": null, "true_bearing_deg": null, "altitude_deg": null,
             "confirmed": false, "observer": "LW", "remark": "",
         }));
-        assert_comes_back::<BoardAzimuthAnswer>(&json!({ "withdrawn": true }));
+        assert_comes_back::<BoardAzimuthResponse>(&json!({ "withdrawn": true }));
     }
 
     #[test]

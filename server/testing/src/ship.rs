@@ -9,7 +9,7 @@ use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::batch::{Batch, StreamId};
-use binnacle_wire::messages::{Downlink, EnrolAnswer};
+use binnacle_wire::messages::{Downlink, EnrolResponse};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -43,7 +43,7 @@ impl Ship {
         let enrolled = enrol_with_code(server, code["code"].as_str().unwrap())
             .await
             .good();
-        let enrolled: EnrolAnswer = serde_json::from_value(enrolled).unwrap();
+        let enrolled: EnrolResponse = serde_json::from_value(enrolled).unwrap();
         Ship {
             url: server.url.clone(),
             http: server.http.clone(),

@@ -10,7 +10,7 @@ use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Valid};
 use binnacle_platform::ids::AzimuthId;
-use binnacle_wire::messages::{BoardAzimuth, BoardAzimuthAnswer};
+use binnacle_wire::messages::{BoardAzimuth, BoardAzimuthResponse};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -30,7 +30,7 @@ where
 #[utoipa::path(put, path = "/agents/azimuths/{id}", tag = "agents", security(("token" = [])),
     params(("id" = AzimuthId, Path, description = "Made on board")),
     request_body = BoardAzimuth,
-    responses((status = 200, body = BoardAzimuthAnswer), (status = 401, body = Problem),
+    responses((status = 200, body = BoardAzimuthResponse), (status = 401, body = Problem),
               (status = 404, body = Problem), (status = 422, body = Problem)))]
 async fn put_azimuth(
     State(app): State<App>,
@@ -38,7 +38,7 @@ async fn put_azimuth(
     agent: Agent,
     Id(id): Id<AzimuthId>,
     Valid(sent): Valid<BoardAzimuth>,
-) -> Result<Json<BoardAzimuthAnswer>> {
+) -> Result<Json<BoardAzimuthResponse>> {
     let now = app.clock.now();
     let report = sent.report.checked(now).map_err(invalid_report)?;
     let row = NewRow {
@@ -60,7 +60,7 @@ async fn put_azimuth(
         change.commit().await?;
     }
     let entry = store::must_find(&app.db, agent.vessel_id, id).await?;
-    Ok(Json(BoardAzimuthAnswer {
+    Ok(Json(BoardAzimuthResponse {
         withdrawn: entry.withdrawn_at.is_some(),
     }))
 }

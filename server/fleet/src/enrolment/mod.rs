@@ -22,7 +22,7 @@ use binnacle_platform::http::{Id, Json, Page, Valid, text};
 use binnacle_platform::ids::{AgentId, CompassId, VesselId};
 use binnacle_platform::secret;
 use binnacle_platform::time::Time;
-use binnacle_wire::messages::{EnrolAnswer, EnrolRequest, NewToken};
+use binnacle_wire::messages::{EnrolRequest, EnrolResponse, NewToken};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -169,17 +169,17 @@ async fn revoke_agent(
 /// Exchange a one-time code for a token and a stream
 #[utoipa::path(post, path = "/agents/enrol", tag = "agents", security(()),
     request_body = EnrolRequest,
-    responses((status = 200, body = EnrolAnswer), (status = 404, body = Problem),
+    responses((status = 200, body = EnrolResponse), (status = 404, body = Problem),
               (status = 410, body = Problem)))]
 async fn enrol(
     State(app): State<App>,
     request: RequestContext,
     Valid(sent): Valid<EnrolRequest>,
-) -> Result<Json<EnrolAnswer>> {
+) -> Result<Json<EnrolResponse>> {
     let version = text("agent_version", &sent.agent_version)?;
     let now = app.clock.now();
     let enrolled = store::enrol(&request, &sent.code, &version, now.into()).await?;
-    Ok(Json(EnrolAnswer {
+    Ok(Json(EnrolResponse {
         token: enrolled.token,
         stream: enrolled.stream,
         vessel_name: enrolled.vessel_name,

@@ -35,7 +35,7 @@ use binnacle_platform::http::{Id, Json, Params};
 use binnacle_platform::time::Time;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::codec::MAX_BYTES;
-use binnacle_wire::messages::{Downlink, OpenStreamAnswer};
+use binnacle_wire::messages::{Downlink, OpenStreamResponse};
 use downlink::{AgentState, DownlinkResponse};
 use metrics::counter;
 use std::time::Duration;
@@ -65,16 +65,16 @@ where
 
 /// Open a new stream for the same compass
 #[utoipa::path(post, path = "/streams", tag = "agents", security(("token" = [])),
-    responses((status = 201, body = OpenStreamAnswer), (status = 401, body = Problem)))]
+    responses((status = 201, body = OpenStreamResponse), (status = 401, body = Problem)))]
 async fn open_stream(
     State(app): State<App>,
     request: RequestContext,
     agent: Agent,
-) -> Result<(StatusCode, Json<OpenStreamAnswer>)> {
+) -> Result<(StatusCode, Json<OpenStreamResponse>)> {
     let mut tx = request.begin().await?;
     let stream = enrolment::open_stream(&mut tx, agent, app.clock.now().into()).await?;
     tx.commit().await?;
-    Ok((StatusCode::CREATED, Json(OpenStreamAnswer { stream })))
+    Ok((StatusCode::CREATED, Json(OpenStreamResponse { stream })))
 }
 
 /// Send a batch

@@ -10,7 +10,7 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Valid};
 use binnacle_platform::ids::EntryId;
 use binnacle_wire::logbook::reporter;
-use binnacle_wire::messages::{LogbookAnswer, LogbookReport};
+use binnacle_wire::messages::{LogbookReport, LogbookResponse};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -30,7 +30,7 @@ where
 #[utoipa::path(put, path = "/agents/logbook/{id}", tag = "agents", security(("token" = [])),
     params(("id" = EntryId, Path, description = "Made on board")),
     request_body = LogbookReport,
-    responses((status = 200, body = LogbookAnswer), (status = 401, body = Problem),
+    responses((status = 200, body = LogbookResponse), (status = 401, body = Problem),
               (status = 404, body = Problem), (status = 422, body = Problem)))]
 async fn put_report(
     State(app): State<App>,
@@ -38,7 +38,7 @@ async fn put_report(
     agent: Agent,
     Id(id): Id<EntryId>,
     Valid(sent): Valid<LogbookReport>,
-) -> Result<Json<LogbookAnswer>> {
+) -> Result<Json<LogbookResponse>> {
     let now = app.clock.now();
     let (revision, withdrawn) = (sent.revision, sent.withdrawn);
     if revision == 0 {
@@ -72,7 +72,7 @@ async fn put_report(
     if counts {
         change.commit().await?;
     }
-    Ok(Json(LogbookAnswer {
+    Ok(Json(LogbookResponse {
         revision: revision.max(known),
         withdrawn: current.withdrawn_at.is_some() || (counts && withdrawn),
     }))

@@ -480,7 +480,7 @@ impl Row {
 fn word(value: &impl Serialize) -> Result<String> {
     match serde_json::to_value(value)? {
         Value::String(word) => Ok(word),
-        other => Err(anyhow::anyhow!("{other} is no word").into()),
+        other => Err(anyhow::anyhow!("{other} is not a string").into()),
     }
 }
 
