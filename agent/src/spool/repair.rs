@@ -191,7 +191,8 @@ async fn carry_reports_over(damaged: &SqlitePool, spool: &Spool) -> usize {
 
 async fn carry_azimuths_over(damaged: &SqlitePool, spool: &Spool) -> usize {
     let mut carried = 0;
-    let all = "SELECT id, azimuth, written_micros, standing, problem FROM azimuths ORDER BY number";
+    let all = "SELECT id, azimuth AS report, written_micros, standing, problem FROM azimuths
+               ORDER BY number";
     for row in rows(damaged, all).await {
         let Some(azimuth) = reports::Row::from_row(&row).ok().and_then(azimuths::read) else {
             continue;

@@ -6,7 +6,7 @@
 use super::{ReportState, Row, SaveReportError, WITHDRAWN_BY_SERVER};
 use crate::spool::Spool;
 use binnacle_compass::time::Timestamp;
-use binnacle_wire::messages::{BoardAzimuth, BoardAzimuthAnswer};
+use binnacle_wire::messages::{BoardAzimuth, BoardAzimuthResponse};
 use serde::Serialize;
 use sqlx::SqliteConnection;
 use uuid::Uuid;
@@ -66,7 +66,7 @@ impl Spool {
     /// Returns the latest azimuths, newest first.
     pub(crate) async fn azimuths(&self) -> sqlx::Result<Vec<SpooledAzimuth>> {
         let rows: Vec<Row> = sqlx::query_as(
-            "SELECT id, azimuth, written_micros, standing, problem FROM azimuths
+            "SELECT id, azimuth AS report, written_micros, standing, problem FROM azimuths
              ORDER BY number DESC LIMIT $1",
         )
         .bind(MAX_LISTED)
@@ -78,7 +78,7 @@ impl Spool {
     /// Returns the first azimuth that waits to be sent.
     pub(crate) async fn next_azimuth(&self) -> sqlx::Result<Option<SpooledAzimuth>> {
         let rows: Vec<Row> = sqlx::query_as(
-            "SELECT id, azimuth, written_micros, standing, problem FROM azimuths
+            "SELECT id, azimuth AS report, written_micros, standing, problem FROM azimuths
              WHERE standing = 'waiting' ORDER BY number",
         )
         .fetch_all(&self.pool)
@@ -90,7 +90,7 @@ impl Spool {
     pub(crate) async fn mark_azimuth_delivered(
         &self,
         sent: &SpooledAzimuth,
-        response: &BoardAzimuthAnswer,
+        response: &BoardAzimuthResponse,
     ) -> sqlx::Result<()> {
         let withdrawn = response.withdrawn && !sent.sent.withdrawn;
         let problem = withdrawn.then_some(WITHDRAWN_BY_SERVER);
@@ -174,7 +174,7 @@ pub(in crate::spool) async fn refuse_waiting(
 
 async fn find(tx: &mut SqliteConnection, id: Uuid) -> sqlx::Result<Option<SpooledAzimuth>> {
     let row: Option<Row> = sqlx::query_as(
-        "SELECT id, azimuth, written_micros, standing, problem FROM azimuths WHERE id = $1",
+        "SELECT id, azimuth AS report, written_micros, standing, problem FROM azimuths WHERE id = $1",
     )
     .bind(id.to_string())
     .fetch_optional(tx)
@@ -189,9 +189,14 @@ async fn count_waiting(tx: &mut SqliteConnection) -> sqlx::Result<i64> {
 }
 
 /// Reads a row. An unreadable one is logged and skipped, because it must not block the rest.
-pub(in crate::spool) fn read(
-    (id, azimuth, written_micros, state, problem): Row,
-) -> Option<SpooledAzimuth> {
+pub(in crate::spool) fn read(row: Row) -> Option<SpooledAzimuth> {
+    let Row {
+        id,
+        report: azimuth,
+        written_micros,
+        standing: state,
+        problem,
+    } = row;
     let read = || -> anyhow::Result<SpooledAzimuth> {
         Ok(SpooledAzimuth {
             id: id.parse()?,
@@ -263,12 +268,12 @@ mod tests {
             .save_azimuth(ID, sun("LW", true), time())
             .await
             .unwrap();
-        let stands = BoardAzimuthAnswer { withdrawn: false };
+        let stands = BoardAzimuthResponse { withdrawn: false };
         spool.mark_azimuth_delivered(&sent, &stands).await.unwrap();
         assert_eq!(spool.next_azimuth().await.unwrap(), Some(back.clone()));
         let again = spool.save_azimuth(ID, sun("LW", false), time()).await;
         assert!(matches!(again, Err(SaveReportError::Withdrawn)));
-        let gone = BoardAzimuthAnswer { withdrawn: true };
+        let gone = BoardAzimuthResponse { withdrawn: true };
         spool.mark_azimuth_delivered(&back, &gone).await.unwrap();
         assert_eq!(spool.next_azimuth().await.unwrap(), None);
         assert_eq!(spool.azimuths().await.unwrap()[0].problem, None);

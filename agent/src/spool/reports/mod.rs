@@ -8,7 +8,7 @@ pub(super) mod azimuths;
 use super::database::Spool;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::logbook::Report;
-use binnacle_wire::messages::{LogbookAnswer, LogbookReport};
+use binnacle_wire::messages::{LogbookReport, LogbookResponse};
 use serde::{Deserialize, Serialize};
 use sqlx::SqliteConnection;
 use uuid::Uuid;
@@ -68,7 +68,15 @@ pub(crate) enum SaveReportError {
     Spool(#[from] sqlx::Error),
 }
 
-pub(super) type Row = (String, String, i64, ReportState, Option<String>);
+/// Row of a report, or of an azimuth under the same names.
+#[derive(sqlx::FromRow)]
+pub(super) struct Row {
+    id: String,
+    report: String,
+    written_micros: i64,
+    standing: ReportState,
+    problem: Option<String>,
+}
 
 impl Spool {
     /// Stores a report, or a change of one; an identical report changes nothing.
@@ -142,7 +150,7 @@ impl Spool {
     pub(crate) async fn mark_report_delivered(
         &self,
         sent: &StoredReport,
-        response: &LogbookAnswer,
+        response: &LogbookResponse,
     ) -> sqlx::Result<()> {
         let withdrawn = response.withdrawn && !sent.sent.withdrawn;
         let problem = withdrawn.then_some(WITHDRAWN_BY_SERVER);
@@ -233,7 +241,14 @@ async fn count_waiting(tx: &mut SqliteConnection) -> sqlx::Result<i64> {
 }
 
 /// Reads a row. An unreadable one is logged and skipped, because it must not block the rest.
-pub(super) fn read((id, report, written_micros, state, problem): Row) -> Option<StoredReport> {
+pub(super) fn read(row: Row) -> Option<StoredReport> {
+    let Row {
+        id,
+        report,
+        written_micros,
+        standing: state,
+        problem,
+    } = row;
     let read = || -> anyhow::Result<StoredReport> {
         Ok(StoredReport {
             id: id.parse()?,
@@ -282,8 +297,8 @@ mod tests {
             .await
     }
 
-    fn accepted_response(revision: u32) -> LogbookAnswer {
-        LogbookAnswer {
+    fn accepted_response(revision: u32) -> LogbookResponse {
+        LogbookResponse {
             revision,
             withdrawn: false,
         }
