@@ -3,8 +3,8 @@
 //! there may be no model at all; a wrong one is worse.
 
 use crate::arguments::Arguments;
+use crate::band_check::look;
 use crate::detector::{self, leave_gyro_alone, plan, run_until};
-use crate::look::look;
 use crate::score::{DAY_S, FalseReports, print_false_reports};
 use crate::table::{at_least, at_most, quantile, share};
 use crate::voyages::Variety;

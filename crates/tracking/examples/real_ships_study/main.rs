@@ -13,13 +13,13 @@
 mod voyages;
 
 mod arguments;
+mod band_check;
 mod causes;
+mod cold_start;
 mod detector;
 mod efficiency;
-mod look;
 mod score;
-mod sound;
-mod starting;
+mod sound_ships;
 mod steps;
 mod table;
 
@@ -44,8 +44,8 @@ fn main() -> ExitCode {
         println!("no row {unknown}: --list has the names");
         return ExitCode::FAILURE;
     }
-    sound::run(&arguments);
-    starting::run(&arguments);
+    sound_ships::run(&arguments);
+    cold_start::run(&arguments);
     steps::run(&arguments);
     causes::run(&arguments);
     efficiency::run(&arguments);
@@ -54,8 +54,8 @@ fn main() -> ExitCode {
 
 /// Returns the names of all rows, in their order.
 fn names() -> Vec<&'static str> {
-    let sound = sound::ROWS.iter().map(|row| row.name);
-    let starting = starting::ROWS.iter().map(|row| row.name);
+    let sound = sound_ships::ROWS.iter().map(|row| row.name);
+    let starting = cold_start::ROWS.iter().map(|row| row.name);
     let steps = steps::ROWS.iter().map(|row| row.name);
     let causes = causes::ROWS.iter().map(|row| row.name);
     let efficiency = efficiency::ROWS.iter().map(|row| row.name);

@@ -1,8 +1,8 @@
 //! Sound ships for a year: false reports, and the band from month to month.
 
 use crate::arguments::Arguments;
+use crate::band_check::{Held, look};
 use crate::detector::{leave_gyro_alone, plan, run_until};
-use crate::look::{Held, look};
 use crate::score::{FalseReports, Unstable, print_false_reports};
 use crate::table::{at_most, held, quantile};
 use crate::voyages::fleet::{Event, Plan, sail_log};

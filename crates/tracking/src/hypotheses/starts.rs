@@ -11,7 +11,6 @@ use crate::state_space::states::{
 };
 use binnacle_analysis::estimate::POPULATION_SD;
 use binnacle_analysis::fleet_prior::{PriorComponent, ShipPrior};
-use binnacle_compass::ship::PARAMETERS;
 
 /// Guess of a value: standard deviation and probability.
 #[derive(Clone, Copy, Debug)]
@@ -73,11 +72,11 @@ pub(crate) fn starts(
 /// Returns a filter before the first row, its ship drawn from a component of the prior.
 fn of_component(component: &PriorComponent, size: f64, plain: &[f64; STATES]) -> Filter {
     let mut filter = Filter::new([0.0; STATES], plain);
-    for i in 0..PARAMETERS {
-        filter.mean[i] = component.mean[i] / POPULATION_SD[i];
-        for j in 0..PARAMETERS {
-            filter.covariance[i][j] =
-                size * size * component.covariance[i][j] / (POPULATION_SD[i] * POPULATION_SD[j]);
+    let rows = component.covariance.iter().zip(POPULATION_SD).enumerate();
+    for (i, (row, sd)) in rows {
+        filter.mean[i] = component.mean[i] / sd;
+        for (j, (covariance, other_sd)) in row.iter().zip(POPULATION_SD).enumerate() {
+            filter.covariance[i][j] = size * size * covariance / (sd * other_sd);
         }
     }
     filter

@@ -1,4 +1,4 @@
-//! The bank of hypotheses: which leads, which are dropped, and which are the same.
+//! Selection of hypotheses: the lead, those that are dropped, and those that are merged.
 
 use super::tracker::Tracker;
 use crate::hypotheses::hypothesis::Hypothesis;
