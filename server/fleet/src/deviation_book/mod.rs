@@ -215,7 +215,7 @@ impl Selection {
 /// Returns the key that a cursor names.
 fn entry_key(micros: i64, azimuth: Uuid) -> Result<EntryKey> {
     let time = Timestamp::from_micros(micros)
-        .map_err(|_| Error::BadRequest(format!("after: {micros} is no time of an entry")))?;
+        .map_err(|_| Error::BadRequest(format!("after: {micros} is not the time of an entry")))?;
     Ok(EntryKey {
         time: Time(time),
         azimuth,
