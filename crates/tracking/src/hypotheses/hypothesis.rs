@@ -8,13 +8,15 @@ use crate::state_space::scalar::{
     Scalar, Silent, deviation, difference, sighted_deviation, sighted_gyro,
 };
 use crate::state_space::ship_state::ShipState;
-use crate::state_space::states::{ALIGNMENT, BX, BY, GYRO, STATES};
+use crate::state_space::states::{ALIGNMENT, BX, BY, GYRO, STATES, USUAL_H_NT};
 use crate::state_space::transition::Transition;
+use binnacle_analysis::estimate::POPULATION_SD;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::azimuth::Azimuth;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 use binnacle_compass::time::Timestamp;
+use std::sync::Arc;
 
 /// Growth of a drifting ship's (bx, by), nT squared a second: 2 µT in thirty days.
 const DRIFTING_NT2_PER_S: f64 = 2000.0 * 2000.0 / (30.0 * 86_400.0);
@@ -32,6 +34,8 @@ const REALIGNED_DEG: f64 = 2.0;
 const WILD: f64 = 0.004;
 /// Standard deviation of a row's share of a jump, degrees.
 const AMID_DEG: f64 = 3.0;
+/// Uncertainty of the deviation from which a row may teach much, degrees.
+const OPEN_DEG: f64 = 0.7;
 /// Standard deviation of a stuck instrument's readings, degrees.
 const HELD_DEG: f64 = 0.3;
 /// Greatest loss of a row.
@@ -75,7 +79,7 @@ pub(crate) struct Begin {
 #[derive(Clone, Debug)]
 pub(crate) struct Hypothesis {
     pub(crate) filter: Filter,
-    pub(crate) events: Vec<Event>,
+    pub(crate) events: Vec<Arc<Event>>,
     /// Logarithm of the prior probability of its events.
     pub(crate) log_prior: f64,
     /// Number of the starting guess that it descends from.
@@ -109,8 +113,16 @@ impl Read {
 }
 
 impl Hypothesis {
+    /// Returns true if a row may teach much of the ship.
+    pub(crate) fn may_teach(&self) -> bool {
+        let p = &self.filter.covariance;
+        let permanent_deg = (POPULATION_SD[BX] / USUAL_H_NT).to_degrees();
+        let variance = permanent_deg.powi(2) * (p[BX][BX] + p[BY][BY]) + p[ALIGNMENT][ALIGNMENT];
+        variance > OPEN_DEG * OPEN_DEG && self.learns_the_ship()
+    }
+
     /// Returns true if what a row teaches now is the ship and not some passing error.
-    pub(crate) fn learns_the_ship(&self) -> bool {
+    fn learns_the_ship(&self) -> bool {
         let passing = |kind: Kind| kind.passes_by() || kind == Kind::GyroSettling;
         !self.silent().compass && !self.lasting().any(passing)
     }
@@ -275,7 +287,7 @@ impl Hypothesis {
         for jump in kind.row().jumps {
             next.filter.covariance[jump.state][jump.state] += jump.sd * jump.sd;
         }
-        next.events.push(Event {
+        next.events.push(Arc::new(Event {
             kind,
             from: begin.time,
             until: None,
@@ -284,7 +296,7 @@ impl Hypothesis {
             ship_at_end: None,
             in_port: begin.in_port,
             held_deg: begin.row.shown_deg(kind),
-        });
+        }));
         next.is_amid = !kind.row().jumps.is_empty();
         next.log_prior += log_prior;
         next
@@ -323,11 +335,12 @@ impl Hypothesis {
 
     pub(crate) fn with_end(&self, event: usize, begin: &Begin, log_prior: f64) -> Hypothesis {
         let mut next = self.clone();
-        next.events[event].until = Some(begin.time);
-        next.events[event].ship_at_end = Some(Box::new(begin.ship.clone()));
-        if let Some(before) = next.events[event].before.take() {
+        let ended = Arc::make_mut(&mut next.events[event]);
+        ended.until = Some(begin.time);
+        ended.ship_at_end = Some(Box::new(begin.ship.clone()));
+        if let Some(before) = ended.before.take() {
             next.filter.restore(&before);
-            next.is_amid = !next.events[event].kind.passes_by();
+            next.is_amid = !ended.kind.passes_by();
         }
         next.log_prior += log_prior;
         next

@@ -58,8 +58,9 @@ impl Filter {
                 *x *= keep * other;
             }
         }
-        for pair in &t.pairs {
-            self.turn(pair);
+        self.turn(&t.schuler);
+        if let Some(anomaly) = &t.anomaly {
+            self.turn(anomaly);
         }
         for (i, variance) in t.added.iter().enumerate() {
             self.covariance[i][i] += variance;

@@ -50,6 +50,14 @@ impl Level {
         Level::Drift,
     ];
 
+    /// Returns true if what the level says is forgotten within a day.
+    pub(crate) fn is_brief(self) -> bool {
+        !matches!(
+            self,
+            Level::GyroSlow | Level::List | Level::PortStep | Level::Drift
+        )
+    }
+
     /// Returns the size on a usual ship, and the standard deviation of its logarithm over
     /// ships.
     pub(crate) fn prior(self) -> Size {

@@ -42,8 +42,10 @@ pub(crate) struct Transition {
     pub(crate) keep: [f64; STATES],
     /// Variance added to each state.
     pub(crate) added: [f64; STATES],
-    /// States that swing with a rate of their own.
-    pub(crate) pairs: Vec<Pair>,
+    /// The gyro's swing with its rate.
+    pub(crate) schuler: Pair,
+    /// An anomaly with its rate, while one is passed.
+    pub(crate) anomaly: Option<Pair>,
 }
 
 /// Transition of a state and its rate, which follows it.
@@ -60,7 +62,12 @@ impl Transition {
         let mut t = Transition {
             keep: [1.0; STATES],
             added: [0.0; STATES],
-            pairs: Vec::with_capacity(2),
+            schuler: swing(
+                row.seconds,
+                row.turned_deg.abs() > KICK_DEG,
+                levels.at(Level::Schuler),
+            ),
+            anomaly: None,
         };
         let seconds = row.seconds;
         let turned = row.turned_deg.abs();
@@ -93,7 +100,37 @@ impl Transition {
                 t.added[state] += NEW_REFERENCE_DEG * NEW_REFERENCE_DEG;
             }
         }
-        t.swing(seconds, turned > KICK_DEG, levels.at(Level::Schuler));
+        t
+    }
+
+    /// Returns this transition to a row for levels of which one is scaled from those that it
+    /// was made for.
+    pub(crate) fn with_scaled(
+        &self,
+        level: Level,
+        factor: f64,
+        row: &Row,
+        levels: &Levels,
+    ) -> Transition {
+        let mut t = self.clone();
+        let square = factor * factor;
+        match level {
+            Level::White | Level::DifferenceWhite => {}
+            Level::Swing => t.added[SWING] *= square,
+            Level::Friction => t.added[FRICTION] *= square,
+            Level::GyroSlow => t.added[GYRO_SLOW] *= square,
+            Level::Variation => t.added[VARIATION] *= square,
+            Level::Reflection => t.added[REFLECTION] *= square,
+            Level::List => t.added[LIST] *= square,
+            Level::Schuler => {
+                for added in t.schuler.added.as_flattened_mut() {
+                    *added *= square;
+                }
+            }
+            Level::PortStep | Level::Drift => {
+                return Transition::to(row, &levels.scaled(level, factor));
+            }
+        }
         t
     }
 
@@ -129,29 +166,6 @@ impl Transition {
         self.added[state] = sd * sd * (1.0 - keep * keep);
     }
 
-    fn swing(&mut self, seconds: f64, kicked: bool, sd: f64) {
-        let [[a, b], [c, d]] = swing_over(seconds);
-        let variance = sd * sd;
-        let across = -variance * (a * c + b * d);
-        let mut added = [
-            [variance * (1.0 - a * a - b * b), across],
-            [across, variance * (1.0 - c * c - d * d)],
-        ];
-        if kicked {
-            let [[_, swing], [_, rate]] = swing_over(seconds.min(SETTLED_S));
-            let kick = KICK * KICK * variance;
-            added[0][0] += kick * swing * swing;
-            added[0][1] += kick * swing * rate;
-            added[1][0] += kick * swing * rate;
-            added[1][1] += kick * rate * rate;
-        }
-        self.pairs.push(Pair {
-            state: SCHULER,
-            matrix: [[a, b], [c, d]],
-            added,
-        });
-    }
-
     /// Lets a local anomaly come and go smoothly: a Gaussian process of the Matérn kind, once
     /// differentiable, of memory [`ANOMALY_S`] (Rasmussen & Williams 2006, eq. 4.17).
     pub(crate) fn pass_anomaly(&mut self, seconds: f64) {
@@ -163,7 +177,7 @@ impl Transition {
         let value = ANOMALY_DEG * ANOMALY_DEG;
         let rate = value * decay * decay;
         let across = -(a * c * value + b * d * rate);
-        self.pairs.push(Pair {
+        self.anomaly = Some(Pair {
             state: ANOMALY,
             matrix: [[a, b], [c, d]],
             added: [
@@ -171,5 +185,29 @@ impl Transition {
                 [across, rate - c * c * value - d * d * rate],
             ],
         });
+    }
+}
+
+/// Returns the transition of the gyro's swing, kicked by a turn or not.
+fn swing(seconds: f64, kicked: bool, sd: f64) -> Pair {
+    let [[a, b], [c, d]] = swing_over(seconds);
+    let variance = sd * sd;
+    let across = -variance * (a * c + b * d);
+    let mut added = [
+        [variance * (1.0 - a * a - b * b), across],
+        [across, variance * (1.0 - c * c - d * d)],
+    ];
+    if kicked {
+        let [[_, swing], [_, rate]] = swing_over(seconds.min(SETTLED_S));
+        let kick = KICK * KICK * variance;
+        added[0][0] += kick * swing * swing;
+        added[0][1] += kick * swing * rate;
+        added[1][0] += kick * swing * rate;
+        added[1][1] += kick * rate * rate;
+    }
+    Pair {
+        state: SCHULER,
+        matrix: [[a, b], [c, d]],
+        added,
     }
 }

@@ -103,8 +103,8 @@ fn nearest(
         .iter()
         .filter(|e| Class::of(e.kind) == class);
     let apart = |e: &Event| e.from.seconds_since(from).abs();
-    let near = events.filter(|e| apart(e) <= within_s);
-    near.min_by(|a, b| apart(a).total_cmp(&apart(b)))
+    let near = events.map(AsRef::as_ref).filter(|e| apart(e) <= within_s);
+    near.min_by(|a: &&Event, b| apart(a).total_cmp(&apart(b)))
 }
 
 impl Tracker {
@@ -133,7 +133,7 @@ impl Tracker {
             }
         }
         let mut more = Vec::new();
-        for event in &self.bank[0].events {
+        for event in self.bank[0].events.iter().map(AsRef::as_ref) {
             let class = Class::of(event.kind);
             let is_detected = |detected: &Detected| {
                 detected.class == class

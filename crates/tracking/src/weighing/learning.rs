@@ -13,6 +13,12 @@ const MOST_KNOWN: f64 = 400.0;
 /// Greatest step of a level's logarithm at one row.
 const LARGEST_STEP: f64 = 0.05;
 
+/// Rows of a turn, and the number of turns among which the brief levels are shared once a ship
+/// is known.
+const TURN_ROWS: usize = 144;
+const TURNS: usize = 4;
+const KNOWN_ROWS: usize = 30 * TURN_ROWS;
+
 /// Levels with what is known of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Learning {
@@ -20,6 +26,7 @@ pub(crate) struct Learning {
     information: [f64; LEVELS],
     nudged: Vec<Hypothesis>,
     levels: Levels,
+    rows: usize,
 }
 
 impl Learning {
@@ -29,6 +36,7 @@ impl Learning {
             information: Level::ALL.map(|level| level.prior().spread.powi(-2)),
             nudged: Vec::new(),
             levels: Levels::usual(),
+            rows: 0,
         }
     }
 
@@ -41,6 +49,24 @@ impl Learning {
         self.nudged = vec![lead.clone(); LEVELS];
     }
 
+    /// Returns true if a level is looked at in this row: after a month the brief ones take turns.
+    fn is_on(&self, nth: usize, level: Level) -> bool {
+        self.rows < KNOWN_ROWS || !level.is_brief() || nth % TURNS == self.rows / TURN_ROWS % TURNS
+    }
+
+    /// Makes ready for the next row, which `lead` has not read yet: a level whose turn begins
+    /// starts from it.
+    pub(crate) fn prepare(&mut self, lead: &Hypothesis) {
+        if !self.rows.is_multiple_of(TURN_ROWS) || self.rows < KNOWN_ROWS {
+            return;
+        }
+        for (nth, level) in Level::ALL.into_iter().enumerate() {
+            if level.is_brief() && self.is_on(nth, level) {
+                self.nudged[nth] = lead.clone();
+            }
+        }
+    }
+
     /// Reads an azimuth that the lead has read.
     pub(crate) fn read_azimuth(&mut self, azimuth: &Azimuth, row: &Row) {
         for hypothesis in &mut self.nudged {
@@ -49,12 +75,16 @@ impl Learning {
     }
 
     /// Reads the row by which the lead gained some log likelihood.
-    pub(crate) fn read(&mut self, row: &Row, gained: f64, learns: bool) {
+    pub(crate) fn read(&mut self, row: &Row, usual: &Transition, gained: f64, learns: bool) {
         let mut factors = self.log_factors;
-        for (i, (hypothesis, level)) in self.nudged.iter_mut().zip(Level::ALL).enumerate() {
+        for (i, level) in Level::ALL.into_iter().enumerate() {
+            if !self.is_on(i, level) {
+                continue;
+            }
+            let hypothesis = &mut self.nudged[i];
             let levels = self.levels.scaled(level, NUDGE.exp());
             let before = hypothesis.filter.log_likelihood;
-            let transition = Transition::to(row, &levels);
+            let transition = usual.with_scaled(level, NUDGE.exp(), row, &self.levels);
             hypothesis.read(row, &levels, &transition);
             let slope = (hypothesis.filter.log_likelihood - before - gained) / NUDGE;
             if !learns || !slope.is_finite() {
@@ -64,6 +94,7 @@ impl Learning {
             let step = slope / self.information[i];
             factors[i] += step.clamp(-LARGEST_STEP, LARGEST_STEP);
         }
+        self.rows += 1;
         self.log_factors = factors;
         let mut levels = Levels::usual();
         for (level, factor) in Level::ALL.into_iter().zip(factors) {

@@ -25,7 +25,6 @@ impl Tracker {
     /// Puts the best first, and drops those that are hopeless or the same as a better one.
     pub(super) fn prune(&mut self) {
         let lead_weight = self.bank[0].log_weight();
-        let lead_events = self.bank[0].events.len();
         if self.best() > lead_weight + TAKES_LEAD {
             self.weigh_alternatives();
         }
@@ -45,7 +44,6 @@ impl Tracker {
             self.sums = self.sums.restarted();
             self.learning.restart(&self.bank[0]);
         }
-        let _ = lead_events;
         let merges = self.count > STARTING_ROWS;
         let mut kept: Vec<Hypothesis> = Vec::new();
         let mut bank = std::mem::take(&mut self.bank);

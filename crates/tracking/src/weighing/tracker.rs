@@ -25,6 +25,8 @@ const LOOK_ROWS: usize = 2;
 const END_ROWS: usize = 6;
 /// Greatest time between an azimuth and the row in whose circumstances it is read, seconds.
 const AZIMUTH_NEAR_S: f64 = 6.0 * 3600.0;
+/// Log weight below the best's down to which a hypothesis has branches.
+const PLAUSIBLE: f64 = 6.0;
 /// Log weight below the best's from which a hypothesis is left out of the mixture.
 const NEGLIGIBLE: f64 = 7.0;
 
@@ -185,17 +187,18 @@ impl Tracker {
     fn read_all(&mut self, row: &Row) -> Tracked {
         let levels = *self.learning.levels();
         let usual = Transition::to(row, &levels);
+        self.learning.prepare(&self.bank[0]);
         let mut leads = None;
         let best = self.best();
         let mut wild = Vec::new();
         for (i, hypothesis) in self.bank.iter_mut().enumerate() {
-            let before = hypothesis.clone();
-            let is_plausible = hypothesis.log_weight() > best - 5.0;
+            let before = hypothesis.filter.log_likelihood;
+            let is_plausible = hypothesis.log_weight() > best - PLAUSIBLE;
+            let untaught = (is_plausible && hypothesis.may_teach()).then(|| hypothesis.clone());
             let read = hypothesis.read(row, &levels, &usual);
-            if is_plausible && read.teaches() && hypothesis.learns_the_ship() {
-                wild.push(before.after_wild(self.count, row, &levels, &usual));
+            if let Some(untaught) = untaught.filter(|_| read.teaches()) {
+                wild.push(untaught.after_wild(self.count, row, &levels, &usual));
             }
-            let before = before.filter.log_likelihood;
             if i == 0 {
                 let gained = hypothesis.filter.log_likelihood - before;
                 leads = Some((read, gained));
@@ -204,7 +207,7 @@ impl Tracker {
         self.bank.extend(wild);
         let (read, gained) = leads.expect("the bank is never empty");
         let learns = self.is_settled();
-        self.learning.read(row, gained, learns);
+        self.learning.read(row, &usual, gained, learns);
         self.sums.add(row, &read);
         Tracked { read }
     }
@@ -225,7 +228,7 @@ impl Tracker {
         let best = self.best();
         let mut ended: Vec<Hypothesis> = Vec::new();
         for hypothesis in &self.bank {
-            if hypothesis.log_weight() > best - 6.0 {
+            if hypothesis.log_weight() > best - PLAUSIBLE {
                 ended.extend(hypothesis.endings(&begin, spacing_s));
             }
         }
