@@ -1,4 +1,5 @@
-//! Loading of the facts for needs from the database: a few queries for a whole fleet.
+//! Loading of the facts for needs from the database, a few queries for a whole fleet, and
+//! storage of what they found.
 
 use super::facts::{Completed, Facts, Stored, UpcomingCall, Work, assess_compass};
 use super::over_limit_since::{self, DeviationHistory};
@@ -292,4 +293,17 @@ async fn load_limits(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId,
     )?;
     let read = |(vessel, text): (VesselId, String)| Ok((vessel, serde_json::from_str(&text)?));
     found.into_iter().map(read).collect()
+}
+
+/// Stores the deviation histories that have changed.
+pub async fn store_deviation_histories(app: &App, facts: &[Facts]) -> Result<()> {
+    for facts in facts {
+        if let Some(history) = &facts.changed_history {
+            let mut tx = app.db.begin().await?;
+            over_limit_since::store_history(&mut tx, facts.vessel_id, facts.compass_id, history)
+                .await?;
+            tx.commit().await?;
+        }
+    }
+    Ok(())
 }

@@ -10,9 +10,8 @@ mod over_limit_since;
 mod prediction;
 
 pub use facts::Facts;
-pub use load::load_facts;
+pub use load::{load_facts, store_deviation_histories};
 pub use need::{Need, find_need};
-pub use over_limit_since::store_deviation_histories;
 
 use crate::schedule_settings;
 use axum::extract::{FromRef, State};

@@ -3,10 +3,7 @@
 //! Invariants: an observation keeps a level and its date exactly if the deviation was at least
 //! that large at every observation since. A prediction that is too uncertain is no observation.
 
-use super::Facts;
-use binnacle_platform::app::App;
 use binnacle_platform::db::{Db, Result, Tx, execute, rows};
-use binnacle_platform::error;
 use binnacle_platform::ids::{CompassId, OperatorId, VesselId};
 use chrono::NaiveDate;
 use std::collections::BTreeMap;
@@ -36,18 +33,6 @@ impl DeviationHistory {
     pub(super) fn levels(&self) -> impl Iterator<Item = (NaiveDate, f64)> {
         self.0.iter().copied()
     }
-}
-
-/// Stores the deviation histories that have changed.
-pub async fn store_deviation_histories(app: &App, facts: &[Facts]) -> error::Result<()> {
-    for facts in facts {
-        if let Some(history) = &facts.changed_history {
-            let mut tx = app.db.begin().await?;
-            store_history(&mut tx, facts.vessel_id, facts.compass_id, history).await?;
-            tx.commit().await?;
-        }
-    }
-    Ok(())
 }
 
 /// Returns the stored history of each of an operator's compasses.
