@@ -77,7 +77,7 @@ const DAY_S: f64 = 86_400.0;
 pub(crate) const KINDS: [KindRow; 13] = [
     KindRow {
         kind: Kind::Strike,
-        a_year: 0.3,
+        a_year: 0.5,
         a_call: 0.002,
         jumps: &[
             jump(BX, 2.0),
@@ -112,7 +112,7 @@ pub(crate) const KINDS: [KindRow; 13] = [
     },
     KindRow {
         kind: Kind::ShipDrift,
-        a_year: 0.05,
+        a_year: 0.2,
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(40.0 * DAY_S),
@@ -157,7 +157,7 @@ pub(crate) const KINDS: [KindRow; 13] = [
         a_year: 10.0,
         a_call: 0.0,
         jumps: &[],
-        ending: Ending::After(3.0 * HOUR_S),
+        ending: Ending::After(2.0 * HOUR_S),
     },
     KindRow {
         kind: Kind::StuckCard,

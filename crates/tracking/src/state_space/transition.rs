@@ -27,7 +27,7 @@ const KICK: f64 = 2.0;
 /// Greatest time since a turn when the ship has settled again, seconds.
 const SETTLED_S: f64 = 900.0;
 /// Memory and standard deviation of a local anomaly as the ship passes it, where H is usual.
-const ANOMALY_S: f64 = 3600.0;
+const ANOMALY_S: f64 = 4500.0;
 const ANOMALY_DEG: f64 = 2.5;
 /// Drift of the induced parameters over the population, for a drift of (bx, by) of the
 /// population's size.
