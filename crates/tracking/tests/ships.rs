@@ -183,3 +183,36 @@ fn azimuths_halve_a_settled_band_and_it_still_holds() {
     assert!(narrow < 0.6 * wide, "{narrow} of {wide}");
     assert!(held(&with, &log) > 0.7, "{}", held(&with, &log));
 }
+
+#[test]
+fn an_azimuth_far_from_any_sample_is_named_and_changes_nothing() {
+    let log = sail(7, Event::Nothing, 10.0);
+    let last = log.samples.last().unwrap();
+    let late = Sample {
+        time: last.time.plus_seconds(86_400.0),
+        ..*last
+    };
+    let (without, with) = (
+        run(&log.samples),
+        run_with(&log.samples, &[transit(&log, &late, 5.0)]),
+    );
+    assert!(without.notices.is_empty());
+    assert_eq!(with.notices.len(), 1, "{:?}", with.notices);
+    assert_eq!(with.epochs, without.epochs);
+}
+
+#[test]
+fn a_quay_does_not_check_the_compass_beside_its_steel() {
+    let log = sail(7, Event::Nothing, 10.0);
+    let sample = &log.samples[log.samples.len() / 2];
+    let form = transit(&log, sample, 0.0).form().clone();
+    let quay = Azimuth::new(AzimuthForm {
+        kind: AzimuthKind::Quay,
+        compass_bearing_deg: None,
+        true_bearing_deg: Some((sample.gyro.unwrap().degrees() + 8.0).rem_euclid(360.0)),
+        ..form
+    })
+    .unwrap();
+    let (without, with) = (run(&log.samples), run_with(&log.samples, &[quay]));
+    assert_eq!(with.epochs, without.epochs);
+}

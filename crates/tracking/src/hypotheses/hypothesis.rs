@@ -12,7 +12,7 @@ use crate::state_space::states::{ALIGNMENT, BX, BY, GYRO, STATES, USUAL_H_NT};
 use crate::state_space::transition::Transition;
 use binnacle_analysis::estimate::POPULATION_SD;
 use binnacle_compass::angle::wrap_180;
-use binnacle_compass::azimuth::Azimuth;
+use binnacle_compass::azimuth::{Azimuth, AzimuthKind};
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 use binnacle_compass::time::Timestamp;
@@ -219,10 +219,11 @@ impl Hypothesis {
         read
     }
 
-    /// Reads an azimuth in the circumstances of the last row.
+    /// Reads an azimuth in the circumstances of the last row. Alongside a quay it checks the gyro
+    /// alone: the berth's steel moves the compass.
     pub(crate) fn read_azimuth(&mut self, azimuth: &Azimuth, row: &Row) {
         let mut loss = 0.0;
-        if !self.has(Kind::StuckCard) {
+        if azimuth.kind() != AzimuthKind::Quay && !self.has(Kind::StuckCard) {
             let scalar = sighted_deviation(row, &self.filter.mean, azimuth);
             loss += self.filter.update(&scalar).loss();
         }

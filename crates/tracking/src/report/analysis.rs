@@ -84,6 +84,8 @@ struct Voyage {
     notes: Vec<Note>,
     /// Coming azimuths, the next last.
     azimuths: Vec<Azimuth>,
+    /// Number of azimuths with no sample near them in time.
+    unread_azimuths: usize,
     boundaries: Vec<LoggedBoundary>,
     observations: Vec<Observation>,
     pairs: u64,
@@ -103,7 +105,7 @@ impl Voyage {
     fn new(input: &Input<'_>) -> Voyage {
         let logbook = input.logbook;
         let mut azimuths = input.azimuths.to_vec();
-        azimuths.sort_by_key(|azimuth| std::cmp::Reverse(azimuth.time()));
+        azimuths.sort_by(|a, b| in_order(b, a));
         let begins = logbook.iter().map(|entry| Note {
             at: entry.from,
             kind: entry.kind,
@@ -122,6 +124,7 @@ impl Voyage {
             tracker: Tracker::new(input.settings.reference_constant_sd_deg, input.prior),
             notes,
             azimuths,
+            unread_azimuths: 0,
             boundaries: Vec::new(),
             observations: Vec::new(),
             pairs: 0,
@@ -154,13 +157,14 @@ impl Voyage {
             return;
         };
         self.diagnose(reading, &tracked);
-        while self
-            .azimuths
-            .last()
-            .is_some_and(|azimuth| azimuth.time() <= time)
-        {
-            let azimuth = self.azimuths.pop().expect("there is a last one");
-            self.tracker.read_azimuth(&azimuth);
+        self.read_azimuths(Some(time));
+    }
+
+    /// Reads the azimuths up to a time, or all that are left.
+    fn read_azimuths(&mut self, until: Option<Timestamp>) {
+        let is_due = |azimuth: &Azimuth| until.is_none_or(|until| azimuth.time() <= until);
+        while let Some(azimuth) = self.azimuths.pop_if(|azimuth| is_due(azimuth)) {
+            self.unread_azimuths += usize::from(!self.tracker.read_azimuth(&azimuth));
         }
     }
 
@@ -220,7 +224,8 @@ impl Voyage {
         });
     }
 
-    fn finish(self, readings: Vec<Reading>) -> Analysis {
+    fn finish(mut self, readings: Vec<Reading>) -> Analysis {
+        self.read_azimuths(None);
         let epochs = self.epochs();
         let mut changes: Vec<_> = self.tracker.detected.iter().map(change).collect();
         changes.sort_by_key(|change| (change.from, change.detected_at));
@@ -238,7 +243,7 @@ impl Voyage {
             coverage,
             epochs,
             changes,
-            notices: Vec::new(),
+            notices: self.notices(),
             samples: readings.into_iter().map(|r| r.diagnostic).collect(),
         }
     }
@@ -316,7 +321,7 @@ impl Voyage {
             .collect();
         let detected = from.and_then(|boundary| boundary.detected);
         let is_return = from.is_some_and(|boundary| boundary.is_return);
-        let fitted = self.model(ship, to, from);
+        let fitted = self.model(ship, to);
         let resumes = detected.filter(|_| is_return).and_then(|detected| {
             let same = begun.iter().find(|(at, _)| *at == detected.event.from);
             same.map(|(_, index)| *index)
@@ -337,12 +342,7 @@ impl Voyage {
     }
 
     /// Returns the model of a ship's state, if enough was known by then.
-    fn model(
-        &self,
-        ship: Option<&ShipState>,
-        to: Option<Timestamp>,
-        _from: Option<&Boundary<'_>>,
-    ) -> Result<Model, FitError> {
+    fn model(&self, ship: Option<&ShipState>, to: Option<Timestamp>) -> Result<Model, FitError> {
         let known = self
             .observations
             .partition_point(|o| to.is_none_or(|to| o.time.is_some_and(|time| time <= to)));
@@ -376,7 +376,7 @@ impl Voyage {
         let rms = (self.squares / self.observations.len().max(1) as f64).sqrt();
         Ok(Model {
             parameters_over_lambda: seen.parameters(),
-            constant_deg: seen.mean[7],
+            constant_deg: wrap_180(seen.mean[7]),
             covariance: Some(seen.covariance),
             identifiable: Some(identifiable),
             rms_deg: Some(rms),
@@ -400,6 +400,16 @@ impl Voyage {
                 cautions,
             }),
         })
+    }
+
+    fn notices(&self) -> Vec<String> {
+        let unread = (self.unread_azimuths > 0).then(|| {
+            format!(
+                "{} azimuths are more than six hours from any sample and are not used",
+                self.unread_azimuths
+            )
+        });
+        unread.into_iter().collect()
     }
 
     fn references(&self) -> ReferenceCheck {
@@ -430,6 +440,16 @@ impl Detected {
             && self.event.kind != Kind::ShipDrift
             && change(self).cause != Cause::Drift
     }
+}
+
+/// Orders azimuths by time, and those of one time by what they showed.
+fn in_order(a: &Azimuth, b: &Azimuth) -> std::cmp::Ordering {
+    let shown = |azimuth: &Azimuth| azimuth.result().deviation_deg.degrees_east();
+    let heading = |azimuth: &Azimuth| azimuth.compass_heading().degrees();
+    a.time()
+        .cmp(&b.time())
+        .then(heading(a).total_cmp(&heading(b)))
+        .then(shown(a).total_cmp(&shown(b)))
 }
 
 fn noise(levels: &Levels) -> NoiseLevels {

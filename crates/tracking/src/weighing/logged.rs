@@ -9,7 +9,7 @@ use binnacle_compass::logbook::LogbookKind;
 const DISCHARGED: f64 = 0.7;
 
 impl Tracker {
-    /// Takes note of logbook entries of the time since the last row, before `placed` is read.
+    /// Takes note of a logbook entry since the last row.
     pub(crate) fn note(&mut self, kind: LogbookKind) {
         let Some(row) = self.rows.back().cloned() else {
             return;

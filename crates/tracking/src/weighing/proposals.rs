@@ -66,8 +66,8 @@ impl Tracker {
                 });
             }
         }
-        // Disturbances are weighed against whatever else is supposed: where that began, and where they are
-        // likeliest themselves.
+        // Disturbances are weighed against whatever else is supposed: where that began, and
+        // where they are likeliest themselves.
         for alternative in [Kind::Storm.row(), Kind::Anomaly.row()] {
             if lead.has(alternative.kind) || proposals.is_empty() {
                 continue;
