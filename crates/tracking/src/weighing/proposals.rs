@@ -20,6 +20,28 @@ const STOOD_DEG: f64 = 2.0;
 const TURNED_DEG: f64 = 10.0;
 const YEAR_S: f64 = 365.25 * 86_400.0;
 
+/// Log likelihood ratio from which a jump is worth a look, and a slow growth.
+const JUMP_SEEN: f64 = 3.0;
+const GROWTH_SEEN: f64 = 4.0;
+
+/// Start of an event.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    /// Place of the checkpoint before it.
+    place: usize,
+    /// Log prior of the event there, and its log posterior ratio.
+    log_prior: f64,
+    score: f64,
+}
+
+/// Event to be weighed.
+#[derive(Clone, Copy, Debug)]
+struct Proposal {
+    kind: &'static KindRow,
+    place: usize,
+    log_prior: f64,
+}
+
 impl Tracker {
     /// Weighs every kind of event where it is likeliest, before another hypothesis takes the
     /// lead.
@@ -28,7 +50,12 @@ impl Tracker {
             if self.bank[0].has(kind.kind) && !kind.kind.changes_deviation() {
                 continue;
             }
-            for (place, log_prior, score) in self.best_starts(kind) {
+            for Start {
+                place,
+                log_prior,
+                score,
+            } in self.best_starts(kind)
+            {
                 let from = self.checkpoints[place].time;
                 if self.was_tried(kind.kind, from, score) {
                     continue;
@@ -47,18 +74,27 @@ impl Tracker {
     /// Proposes events that the innovations suggest, and replays the rows under them.
     pub(super) fn suppose_events(&mut self) {
         let lead = &self.bank[0];
-        let mut proposals: Vec<(usize, &'static KindRow, f64)> = Vec::new();
+        let mut proposals: Vec<Proposal> = Vec::new();
         let mut tried = Vec::new();
         for kind in &KINDS {
             if lead.has(kind.kind) && !kind.kind.changes_deviation() {
                 continue;
             }
-            for (place, log_prior, score) in self.best_starts(kind) {
+            for Start {
+                place,
+                log_prior,
+                score,
+            } in self.best_starts(kind)
+            {
                 let from = self.checkpoints[place].time;
                 if score <= SUPPOSED || self.was_tried(kind.kind, from, score) {
                     continue;
                 }
-                proposals.push((place, kind, log_prior));
+                proposals.push(Proposal {
+                    kind,
+                    place,
+                    log_prior,
+                });
                 tried.push(Tried {
                     kind: kind.kind,
                     from,
@@ -75,10 +111,10 @@ impl Tracker {
             let own = self
                 .best_starts(alternative)
                 .into_iter()
-                .map(|(place, _, _)| place);
+                .map(|start| start.place);
             let places: Vec<usize> = proposals
                 .iter()
-                .map(|(place, _, _)| *place)
+                .map(|proposal| proposal.place)
                 .chain(own)
                 .collect();
             for place in places {
@@ -97,11 +133,20 @@ impl Tracker {
                     from,
                     score: SUPPOSED,
                 });
-                proposals.push((place, alternative, log_prior));
+                proposals.push(Proposal {
+                    kind: alternative,
+                    place,
+                    log_prior,
+                });
             }
         }
         self.tried.extend(tried);
-        for (place, kind, log_prior) in proposals {
+        for proposal in proposals {
+            let Proposal {
+                kind,
+                place,
+                log_prior,
+            } = proposal;
             let hypothesis = self.replay(place, kind.kind, log_prior);
             self.bank.push(hypothesis);
         }
@@ -142,10 +187,9 @@ impl Tracker {
         (probability > 0.0).then(|| probability.ln())
     }
 
-    /// Returns the checkpoint after which an event of a kind is likeliest: its place, the log
-    /// prior of the event there, and its log posterior ratio.
-    fn best_starts(&self, kind: &KindRow) -> Vec<(usize, f64, f64)> {
-        let mut starts: Vec<(usize, f64, f64)> = Vec::new();
+    /// Returns the likeliest starts of an event of a kind, the best first.
+    fn best_starts(&self, kind: &KindRow) -> Vec<Start> {
+        let mut starts: Vec<Start> = Vec::new();
         for (place, checkpoint) in self.checkpoints.iter().enumerate() {
             let Some(log_prior) = self.log_prior(place, kind) else {
                 continue;
@@ -160,28 +204,32 @@ impl Tracker {
                     0.5 * sums.excess()
                 }
                 Kind::ShipDrift => {
-                    if sums.greatest() < 4.0 {
+                    if sums.greatest() < GROWTH_SEEN {
                         continue;
                     }
                     sums.log_bayes_factor(Kind::Strike.row())
                 }
                 Kind::GyroRamp => {
-                    if sums.greatest() < 4.0 {
+                    if sums.greatest() < GROWTH_SEEN {
                         continue;
                     }
                     sums.log_bayes_factor(Kind::GyroStep.row())
                 }
                 _ => {
-                    if sums.greatest() < 3.0 {
+                    if sums.greatest() < JUMP_SEEN {
                         continue;
                     }
                     sums.log_bayes_factor(kind)
                 }
             };
             let score = factor + log_prior;
-            starts.push((place, log_prior, score));
+            starts.push(Start {
+                place,
+                log_prior,
+                score,
+            });
         }
-        starts.sort_by(|a, b| b.2.total_cmp(&a.2));
+        starts.sort_by(|a, b| b.score.total_cmp(&a.score));
         starts.truncate(STARTS);
         starts
     }
