@@ -77,11 +77,13 @@ impl Timestamp {
     }
 
     /// Microseconds since 1970-01-01T00:00:00Z.
+    #[inline]
     pub fn micros(self) -> i64 {
         self.0
     }
 
     /// Seconds since `earlier`, negative when that is later.
+    #[inline]
     pub fn seconds_since(self, earlier: Timestamp) -> f64 {
         (self.0 - earlier.0) as f64 * 1e-6
     }

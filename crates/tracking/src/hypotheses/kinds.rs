@@ -205,6 +205,14 @@ impl Kind {
         matches!(self, Kind::Storm | Kind::Anomaly)
     }
 
+    /// Returns true for an instrument that stands still.
+    pub(crate) fn is_stuck(self) -> bool {
+        matches!(
+            self,
+            Kind::StuckCard | Kind::StuckGyro | Kind::StuckSatellite
+        )
+    }
+
     /// Returns true for an event that leaves another deviation.
     pub(crate) fn changes_deviation(self) -> bool {
         matches!(

@@ -9,7 +9,8 @@ use binnacle_analysis::estimate::{robust_loss, weight};
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Filter {
     pub(crate) mean: [f64; STATES],
-    pub(crate) covariance: [[f64; STATES]; STATES],
+    /// Boxed, because filters change places.
+    pub(crate) covariance: Box<[[f64; STATES]; STATES]>,
     pub(crate) log_likelihood: f64,
 }
 
@@ -37,7 +38,7 @@ impl Innovation {
 impl Filter {
     /// Makes a filter of independent states from means and standard deviations.
     pub(crate) fn new(mean: [f64; STATES], sd: &[f64; STATES]) -> Filter {
-        let mut covariance = [[0.0; STATES]; STATES];
+        let mut covariance = Box::new([[0.0; STATES]; STATES]);
         for (i, sd) in sd.iter().enumerate() {
             covariance[i][i] = sd * sd;
         }
@@ -73,7 +74,7 @@ impl Filter {
         let turned = |value: f64, rate: f64| (a * value + b * rate, c * value + d * rate);
         let [s, r] = [pair.state, pair.state + 1];
         (self.mean[s], self.mean[r]) = turned(self.mean[s], self.mean[r]);
-        for row in &mut self.covariance {
+        for row in self.covariance.iter_mut() {
             (row[s], row[r]) = turned(row[s], row[r]);
         }
         for j in 0..STATES {

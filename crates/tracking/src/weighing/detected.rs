@@ -1,6 +1,7 @@
 //! Events that have become certain, and what is detected of them.
 
 use super::records::{Class, Detected};
+use super::selection::SETTLED_S;
 use super::tracker::Tracker;
 use crate::hypotheses::hypothesis::{Event, Hypothesis};
 use crate::hypotheses::kinds::Kind;
@@ -11,10 +12,8 @@ use binnacle_compass::time::Timestamp;
 const DETECTED: f64 = 0.98;
 const SAME_EVENT_S: f64 = 86_400.0;
 const LEAST_WINDOW_S: f64 = 1200.0;
-/// Posterior probability below which a detected event is withdrawn, and time for which an event
-/// is detected anew as more is known.
+/// Posterior probability below which a detected event is withdrawn.
 const WITHDRAWN: f64 = 0.3;
-const REFRESHED_S: f64 = 20.0 * 86_400.0;
 
 /// Marginals of the posterior over events.
 struct Marginals<'a> {
@@ -47,15 +46,15 @@ impl<'a> Marginals<'a> {
     /// Returns the seconds within which accounts speak of the same event: half of those to the
     /// lead's next of its class, a day at most.
     fn window_s(&self, class: Class, from: Timestamp) -> f64 {
-        let events = self.bank[0].events.iter();
-        let apart = events
-            .filter(|event| Class::of(event.kind) == class)
-            .map(|event| event.from.seconds_since(from).abs());
         // The nearest is the event itself.
-        let mut apart: Vec<f64> = apart.collect();
-        apart.sort_by(f64::total_cmp);
-        let next = apart.get(1).map_or(SAME_EVENT_S, |next| next / 2.0);
-        next.clamp(LEAST_WINDOW_S, SAME_EVENT_S)
+        let mut nearest = [f64::INFINITY; 2];
+        for event in self.bank[0].events.iter() {
+            let apart = event.from.seconds_since(from).abs();
+            if Class::of(event.kind) == class && apart < nearest[1] {
+                nearest = [nearest[0].min(apart), nearest[0].max(apart)];
+            }
+        }
+        (nearest[1] / 2.0).clamp(LEAST_WINDOW_S, SAME_EVENT_S)
     }
 
     /// Returns the lead's event of a class at about a time.
@@ -112,7 +111,7 @@ impl Tracker {
     pub(super) fn detect(&mut self, now: Timestamp) {
         let marginals = Marginals::new(&self.bank);
         for detected in &mut self.detected {
-            let is_open = now.seconds_since(detected.event.from) < REFRESHED_S;
+            let is_open = now.seconds_since(detected.event.from) < SETTLED_S;
             if detected.withdrawn.is_some() || !(is_open || detected.event.until.is_none()) {
                 continue;
             }
@@ -141,8 +140,7 @@ impl Tracker {
                     && detected.event.from.seconds_since(event.from).abs()
                         <= marginals.window_s(class, event.from)
             };
-            if self.detected.iter().any(is_detected) || now.seconds_since(event.from) > REFRESHED_S
-            {
+            if self.detected.iter().any(is_detected) || now.seconds_since(event.from) > SETTLED_S {
                 continue;
             }
             let found = marginals.event(class, event.from);

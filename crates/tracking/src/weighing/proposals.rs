@@ -34,121 +34,124 @@ struct Start {
     score: f64,
 }
 
+/// Likeliest starts of a kind, the best first.
+#[derive(Clone, Copy, Debug, Default)]
+struct Starts([Option<Start>; STARTS]);
+
+impl Starts {
+    fn offer(&mut self, start: Start) {
+        let mut next = Some(start);
+        for place in &mut self.0 {
+            let is_better = match (&next, &place) {
+                (Some(next), Some(known)) => next.score > known.score,
+                (next, _) => next.is_some(),
+            };
+            if is_better {
+                std::mem::swap(place, &mut next);
+            }
+        }
+    }
+
+    fn iter(&self) -> impl Iterator<Item = Start> {
+        self.0.iter().flatten().copied()
+    }
+}
+
 /// Event to be weighed.
 #[derive(Clone, Copy, Debug)]
 struct Proposal {
     kind: &'static KindRow,
-    place: usize,
-    log_prior: f64,
+    start: Start,
 }
 
 impl Tracker {
     /// Weighs every kind of event where it is likeliest, before another hypothesis takes the
     /// lead.
     pub(super) fn weigh_alternatives(&mut self) {
-        for kind in &KINDS {
-            if self.bank[0].has(kind.kind) && !kind.kind.changes_deviation() {
+        let starts = self.likeliest_starts(f64::NEG_INFINITY);
+        for (kind, starts) in KINDS.iter().zip(starts) {
+            if self.is_under_way(kind) {
                 continue;
             }
-            for Start {
-                place,
-                log_prior,
-                score,
-            } in self.best_starts(kind)
-            {
-                let from = self.checkpoints[place].time;
-                if self.was_tried(kind.kind, from, score) {
-                    continue;
-                }
-                self.tried.push(Tried {
-                    kind: kind.kind,
-                    from,
-                    score,
-                });
-                let hypothesis = self.replay(place, kind.kind, log_prior);
-                self.bank.push(hypothesis);
+            for start in starts.iter() {
+                self.weigh(kind, start);
             }
         }
     }
 
     /// Proposes events that the innovations suggest, and replays the rows under them.
     pub(super) fn suppose_events(&mut self) {
-        let lead = &self.bank[0];
+        let likeliest = self.likeliest_starts(SUPPOSED);
         let mut proposals: Vec<Proposal> = Vec::new();
-        let mut tried = Vec::new();
-        for kind in &KINDS {
-            if lead.has(kind.kind) && !kind.kind.changes_deviation() {
+        for (kind, starts) in KINDS.iter().zip(likeliest) {
+            if self.is_under_way(kind) {
                 continue;
             }
-            for Start {
-                place,
-                log_prior,
-                score,
-            } in self.best_starts(kind)
-            {
-                let from = self.checkpoints[place].time;
-                if score <= SUPPOSED || self.was_tried(kind.kind, from, score) {
-                    continue;
-                }
-                proposals.push(Proposal {
-                    kind,
-                    place,
-                    log_prior,
-                });
-                tried.push(Tried {
-                    kind: kind.kind,
-                    from,
-                    score,
-                });
-            }
+            let new = starts.iter().filter(|start| {
+                let from = self.checkpoints[start.place].time;
+                !self.was_tried(kind.kind, from, start.score)
+            });
+            proposals.extend(new.map(|start| Proposal { kind, start }));
+        }
+        if proposals.is_empty() {
+            return;
         }
         // Disturbances are weighed against whatever else is supposed: where that began, and
         // where they are likeliest themselves.
-        for alternative in [Kind::Storm.row(), Kind::Anomaly.row()] {
-            if lead.has(alternative.kind) || proposals.is_empty() {
+        let places: Vec<usize> = proposals.iter().map(|p| p.start.place).collect();
+        for kind in [Kind::Storm.row(), Kind::Anomaly.row()] {
+            if self.is_under_way(kind) {
                 continue;
             }
-            let own = self
-                .best_starts(alternative)
-                .into_iter()
-                .map(|start| start.place);
-            let places: Vec<usize> = proposals
-                .iter()
-                .map(|proposal| proposal.place)
-                .chain(own)
-                .collect();
-            for place in places {
+            let own = self.likeliest_starts(f64::NEG_INFINITY)[kind.kind as usize];
+            let own = own.iter().map(|start| start.place);
+            for place in places.iter().copied().chain(own) {
                 let from = self.checkpoints[place].time;
-                let Some(log_prior) = self.log_prior(place, alternative) else {
+                let same = |p: &Proposal| p.kind.kind == kind.kind && p.start.place == place;
+                let Some(log_prior) = self.log_prior(place, kind) else {
                     continue;
                 };
-                let same = |t: &Tried| t.kind == alternative.kind && t.from == from;
-                if tried.iter().any(same)
-                    || self.was_tried(alternative.kind, from, f64::NEG_INFINITY)
-                {
+                if proposals.iter().any(same) || self.was_tried(kind.kind, from, SUPPOSED) {
                     continue;
                 }
-                tried.push(Tried {
-                    kind: alternative.kind,
-                    from,
-                    score: SUPPOSED,
-                });
-                proposals.push(Proposal {
-                    kind: alternative,
+                let score = SUPPOSED;
+                let start = Start {
                     place,
                     log_prior,
-                });
+                    score,
+                };
+                proposals.push(Proposal { kind, start });
             }
         }
-        self.tried.extend(tried);
-        for proposal in proposals {
-            let Proposal {
-                kind,
-                place,
-                log_prior,
-            } = proposal;
-            let hypothesis = self.replay(place, kind.kind, log_prior);
+        for Proposal { kind, start } in &proposals {
+            let hypothesis = self.replay(start.place, kind.kind, start.log_prior);
             self.bank.push(hypothesis);
+        }
+        let tried = proposals.iter().map(|p| self.tried_at(p.kind, p.start));
+        self.tried.extend(tried.collect::<Vec<_>>());
+    }
+
+    /// Returns true if an event of the kind lasts by the lead, which a second one would not
+    /// change.
+    fn is_under_way(&self, kind: &KindRow) -> bool {
+        !kind.kind.changes_deviation() && self.bank[0].has(kind.kind)
+    }
+
+    /// Weighs one more event, unless it was weighed before.
+    fn weigh(&mut self, kind: &KindRow, start: Start) {
+        let tried = self.tried_at(kind, start);
+        if !self.was_tried(kind.kind, tried.from, start.score) {
+            self.tried.push(tried);
+            let hypothesis = self.replay(start.place, kind.kind, start.log_prior);
+            self.bank.push(hypothesis);
+        }
+    }
+
+    fn tried_at(&self, kind: &KindRow, start: Start) -> Tried {
+        Tried {
+            kind: kind.kind,
+            from: self.checkpoints[start.place].time,
+            score: start.score,
         }
     }
 
@@ -187,51 +190,49 @@ impl Tracker {
         (probability > 0.0).then(|| probability.ln())
     }
 
-    /// Returns the likeliest starts of an event of a kind, the best first.
-    fn best_starts(&self, kind: &KindRow) -> Vec<Start> {
-        let mut starts: Vec<Start> = Vec::new();
+    /// Returns the likeliest starts of each kind of event, with a log posterior ratio above
+    /// the least.
+    fn likeliest_starts(&self, least: f64) -> [Starts; KINDS.len()] {
+        let mut likeliest = [Starts::default(); KINDS.len()];
         for (place, checkpoint) in self.checkpoints.iter().enumerate() {
-            let Some(log_prior) = self.log_prior(place, kind) else {
-                continue;
-            };
             let sums = self.sums.since(&checkpoint.sums);
-            let factor = match kind.kind {
-                Kind::Storm | Kind::Anomaly => 0.5 * sums.excess(),
-                Kind::StuckCard | Kind::StuckGyro | Kind::StuckSatellite => {
-                    if !self.seems_stuck(kind.kind, checkpoint.after) {
-                        continue;
+            let greatest = sums.greatest();
+            for (kind, starts) in KINDS.iter().zip(&mut likeliest) {
+                let disturbed = 0.5 * sums.excess();
+                let factor = match kind.kind {
+                    Kind::Storm | Kind::Anomaly => disturbed,
+                    Kind::StuckCard | Kind::StuckGyro | Kind::StuckSatellite => disturbed,
+                    Kind::ShipDrift if greatest >= GROWTH_SEEN => {
+                        sums.log_bayes_factor(Kind::Strike.row())
                     }
-                    0.5 * sums.excess()
-                }
-                Kind::ShipDrift => {
-                    if sums.greatest() < GROWTH_SEEN {
-                        continue;
+                    Kind::GyroRamp if greatest >= GROWTH_SEEN => {
+                        sums.log_bayes_factor(Kind::GyroStep.row())
                     }
-                    sums.log_bayes_factor(Kind::Strike.row())
+                    Kind::ShipDrift | Kind::GyroRamp => continue,
+                    _ if greatest >= JUMP_SEEN => sums.log_bayes_factor(kind),
+                    _ => continue,
+                };
+                // Every prior is less than one.
+                if factor <= least {
+                    continue;
                 }
-                Kind::GyroRamp => {
-                    if sums.greatest() < GROWTH_SEEN {
-                        continue;
-                    }
-                    sums.log_bayes_factor(Kind::GyroStep.row())
+                let Some(log_prior) = self.log_prior(place, kind) else {
+                    continue;
+                };
+                let score = factor + log_prior;
+                if score <= least
+                    || (kind.kind.is_stuck() && !self.seems_stuck(kind.kind, checkpoint.after))
+                {
+                    continue;
                 }
-                _ => {
-                    if sums.greatest() < JUMP_SEEN {
-                        continue;
-                    }
-                    sums.log_bayes_factor(kind)
-                }
-            };
-            let score = factor + log_prior;
-            starts.push(Start {
-                place,
-                log_prior,
-                score,
-            });
+                starts.offer(Start {
+                    place,
+                    log_prior,
+                    score,
+                });
+            }
         }
-        starts.sort_by(|a, b| b.score.total_cmp(&a.score));
-        starts.truncate(STARTS);
-        starts
+        likeliest
     }
 
     /// Returns true if such an event was weighed at about that time, when it was about as

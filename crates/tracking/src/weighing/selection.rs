@@ -2,9 +2,10 @@
 
 use super::tracker::Tracker;
 use crate::hypotheses::hypothesis::Hypothesis;
-use crate::hypotheses::kinds::Kind;
+use crate::hypotheses::kinds::{Ending, Kind};
 use crate::state_space::filter::Filter;
 use crate::state_space::states::STATES;
+use binnacle_compass::time::Timestamp;
 
 /// Log weight below the best's at which a hypothesis is given up.
 const GIVEN_UP: f64 = 16.0;
@@ -21,7 +22,34 @@ const SAME_S: f64 = 6.0 * 3600.0;
 const ALIKE_ROWS: usize = 36;
 const ALIKE: f64 = 0.4;
 
+/// Seconds after which an event that is over, or whose end is none, is no longer judged.
+pub(super) const SETTLED_S: f64 = 20.0 * 86_400.0;
+/// Seconds after which a state from before an event is too old to return to.
+const OUTDATED_S: f64 = 180.0 * 86_400.0;
+/// Rows between looks for events that are settled.
+const SETTLING_ROWS: usize = 144;
+
 impl Tracker {
+    /// Drops events that are settled from every hypothesis: hypotheses that differ in nothing
+    /// else become one.
+    pub(super) fn settle(&mut self, now: Timestamp) {
+        if !self.count.is_multiple_of(SETTLING_ROWS) {
+            return;
+        }
+        for hypothesis in &mut self.bank {
+            hypothesis.events.retain(|event| {
+                let age_s = now.seconds_since(event.until.unwrap_or(event.from));
+                let judged_s = match event.kind.row().ending {
+                    _ if event.until.is_some() => SETTLED_S,
+                    Ending::Never => SETTLED_S,
+                    Ending::InPort(_) => OUTDATED_S,
+                    Ending::After(_) => f64::INFINITY,
+                };
+                age_s <= judged_s
+            });
+        }
+    }
+
     /// Puts the best first, and drops those that are hopeless or the same as a better one.
     pub(super) fn prune(&mut self) {
         let lead_weight = self.bank[0].log_weight();

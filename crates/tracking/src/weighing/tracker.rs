@@ -43,7 +43,8 @@ pub(crate) struct Tracker {
     pub(super) first_kept: usize,
     pub(crate) count: usize,
     pub(super) sums: EvidenceSums,
-    pub(super) checkpoints: VecDeque<Checkpoint>,
+    /// Checkpoints in order of time; large, and some between are dropped.
+    pub(super) checkpoints: VecDeque<Box<Checkpoint>>,
     /// Events that were supposed and weighed since the lead began.
     pub(super) tried: Vec<Tried>,
     pub(crate) detected: Vec<Detected>,
@@ -108,6 +109,7 @@ impl Tracker {
             self.suppose_events();
         }
         self.prune();
+        self.settle(placed.sample.time);
         self.detect(placed.sample.time);
         Some(tracked)
     }
@@ -175,13 +177,13 @@ impl Tracker {
         {
             self.checkpoints.remove(old);
         }
-        self.checkpoints.push_back(Checkpoint {
+        self.checkpoints.push_back(Box::new(Checkpoint {
             after: self.count,
             time,
             lead: self.bank[0].clone(),
             sums: self.sums,
             begin,
-        });
+        }));
     }
 
     fn read_all(&mut self, row: &Row) -> Tracked {
