@@ -4,7 +4,7 @@
 //! everything that a plan from it depends on, so that the plan can be repeated from the log alone.
 //! The field names are those of `plan` (docs/plan.md).
 
-use crate::work_orders::payload::basis::Basis;
+use crate::work_orders::payload::plan_basis::Basis;
 use crate::work_orders::payload::recorded_reading::BerthCheck;
 use crate::work_orders::refusal::Refusal;
 use binnacle_adjustment::adjust::ReadingForm;

@@ -1,7 +1,7 @@
 //! Inputs of a plan: model, field, binnacle and waters at the time of the reading.
 
 use crate::berth_session::previous_lambda;
-use crate::work_orders::payload::basis::{Basis, ModelUsed};
+use crate::work_orders::payload::plan_basis::{Basis, ModelUsed};
 use crate::work_orders::state::State;
 use crate::work_orders::store;
 use binnacle_adjustment::adjust::{Adjustment, Circumstances, Limits, ReadingForm, Water};

@@ -4,7 +4,7 @@
 //! Invariants: it is calculated from the signed record. It is not used after work on the hull or
 //! at the compass.
 
-use crate::work_orders::payload::basis::PreviousBerth;
+use crate::work_orders::payload::plan_basis::PreviousBerth;
 use binnacle_adjustment::adjust::{
     Adjustment, Circumstances, EarlierLambda, Limits, ReadingForm, Water,
 };

@@ -8,7 +8,7 @@ use crate::berth_session::plan_slots::CorrectorPlanSlots;
 use crate::berth_session::planning_inputs::PlanRequest;
 use crate::work_orders::events::CorrectorMove;
 use crate::work_orders::order_state::OrderState;
-use crate::work_orders::payload::basis::Basis;
+use crate::work_orders::payload::plan_basis::Basis;
 use crate::work_orders::payload::recorded_reading::RecordedReading;
 use crate::work_orders::payload::recorded_second_reading::{
     PARTS_WITH_VERTICAL, RecordedSecondReading, SecondReadingResult, SecondReadingVerdict,

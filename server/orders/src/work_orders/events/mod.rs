@@ -10,6 +10,7 @@ mod event;
 mod offers;
 mod opened;
 mod remark;
+mod reschedule;
 mod signature;
 mod verification;
 
@@ -19,11 +20,11 @@ pub(crate) use closed::Closed;
 pub(crate) use event::{Audience, Circumstances, Event, Headline};
 pub(crate) use offers::{
     Accepted, Boarding, CallMoved, Declined, Lapsed, MessageSent, OfferRound, OfferSent,
-    OfferedFirm, ProposalAccepted, ProposalDeclined, Proposed, RetimeAccepted, RetimeDeclined,
-    RetimeLapsed, RetimeProposed,
+    OfferedFirm, ProposalAccepted, ProposalDeclined, Proposed,
 };
 pub(crate) use opened::Opened;
 pub(crate) use remark::Remark;
+pub(crate) use reschedule::{RetimeAccepted, RetimeDeclined, RetimeLapsed, RetimeProposed};
 
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::chosen_plan::ChosenPlan;

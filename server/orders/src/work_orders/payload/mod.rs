@@ -1,9 +1,9 @@
 //! Payloads of events that the state of an order keeps.
 
-pub(crate) mod basis;
 pub(crate) mod chosen_plan;
 pub(crate) mod exchange;
 pub(crate) mod photograph;
+pub(crate) mod plan_basis;
 pub(crate) mod port_call;
 pub(crate) mod recorded_reading;
 pub(crate) mod recorded_second_reading;

@@ -1,6 +1,6 @@
 //! Reading of the magnetometer at the berth, with its check.
 
-use crate::work_orders::payload::basis::Basis;
+use crate::work_orders::payload::plan_basis::Basis;
 use crate::work_orders::refusal::Refusal;
 use binnacle_adjustment::adjust::ReadingForm;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! Events of the dispatch: offers to firms, their answers, other times, and messages.
+//! Events of the dispatch: offers to firms, their answers, other terms, and messages.
 
 mod accepted;
 mod call_moved;
@@ -8,8 +8,9 @@ mod message;
 mod offer_round;
 mod offer_sent;
 mod on_board;
-mod proposal;
-mod retime;
+mod terms_accepted;
+mod terms_declined;
+mod terms_proposed;
 
 pub(crate) use accepted::Accepted;
 pub(crate) use call_moved::CallMoved;
@@ -19,5 +20,6 @@ pub(crate) use message::MessageSent;
 pub(crate) use offer_round::{OfferRound, OfferedFirm};
 pub(crate) use offer_sent::OfferSent;
 pub(crate) use on_board::Boarding;
-pub(crate) use proposal::{ProposalAccepted, ProposalDeclined, Proposed};
-pub(crate) use retime::{RetimeAccepted, RetimeDeclined, RetimeLapsed, RetimeProposed};
+pub(crate) use terms_accepted::ProposalAccepted;
+pub(crate) use terms_declined::ProposalDeclined;
+pub(crate) use terms_proposed::Proposed;

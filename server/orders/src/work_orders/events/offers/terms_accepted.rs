@@ -1,4 +1,4 @@
-//! Proposal of other terms by a firm, and the operator's answer.
+//! Acceptance of a firm's terms by the operator.
 
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
 use crate::work_orders::offers::OfferState;
@@ -9,47 +9,10 @@ use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
 use serde::{Deserialize, Serialize};
 
-/// Proposal of other terms by a firm.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(transparent)]
-pub(crate) struct Proposed(pub Exchange);
-
 /// Acceptance of a firm's terms by the operator.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct ProposalAccepted(pub Exchange);
-
-/// Refusal of a firm's terms by the operator.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(transparent)]
-pub(crate) struct ProposalDeclined(pub Exchange);
-
-impl Event for Proposed {
-    fn apply(&self, state: &mut OrderState) {
-        state.offers.set(&self.0, OfferState::Proposed);
-        state.follow_offers();
-    }
-
-    fn exchange(&self) -> Option<&Exchange> {
-        Some(&self.0)
-    }
-
-    fn webhook(&self) -> Option<outbox::Kind> {
-        Some(message_kinds::ANSWERED)
-    }
-
-    fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
-        let firm = &self.0.firm.firm_name;
-        Some(Headline::new(
-            notice_kinds::ANSWERED,
-            format!("{firm} proposes other terms"),
-        ))
-    }
-
-    fn changes_offers(&self) -> bool {
-        true
-    }
-}
 
 impl Event for ProposalAccepted {
     fn apply(&self, state: &mut OrderState) {
@@ -82,32 +45,6 @@ impl Event for ProposalAccepted {
         Some(Headline::new(
             notice_kinds::ANSWERED,
             "your terms are accepted",
-        ))
-    }
-
-    fn changes_offers(&self) -> bool {
-        true
-    }
-}
-
-impl Event for ProposalDeclined {
-    fn apply(&self, state: &mut OrderState) {
-        state.offers.set(&self.0, OfferState::Declined);
-        state.follow_offers();
-    }
-
-    fn exchange(&self) -> Option<&Exchange> {
-        Some(&self.0)
-    }
-
-    fn webhook(&self) -> Option<outbox::Kind> {
-        Some(message_kinds::ANSWERED)
-    }
-
-    fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
-        Some(Headline::new(
-            notice_kinds::ANSWERED,
-            "your terms are declined",
         ))
     }
 
