@@ -1,6 +1,6 @@
 //! One account of what happened: a filter, and the events that it supposes.
 
-use super::kinds::{Ending, Kind};
+use super::kinds::{Ending, Kind, Stay};
 use crate::state_space::filter::{Filter, Innovation, Marginal};
 use crate::state_space::levels::Levels;
 use crate::state_space::row::Row;
@@ -33,7 +33,7 @@ const REALIGNED_DEG: f64 = 2.0;
 /// Probability of a wild reading.
 const WILD: f64 = 0.004;
 /// Standard deviation of a row's share of a jump, degrees.
-const AMID_DEG: f64 = 3.0;
+const AMID_DEG: f64 = 1.5;
 /// Uncertainty of the deviation from which a row may teach much, degrees.
 const OPEN_DEG: f64 = 0.7;
 /// Standard deviation of a stuck instrument's readings, degrees.
@@ -60,6 +60,18 @@ pub(crate) struct Event {
     pub(crate) in_port: bool,
     /// Heading at which an instrument stands, degrees.
     pub(crate) held_deg: Option<f64>,
+    /// Distance sailed before it, nautical miles.
+    pub(crate) from_nm: f64,
+}
+
+impl Event {
+    /// Returns the time and distance from its beginning to a row.
+    fn stay_until(&self, row: &Row) -> Stay {
+        Stay {
+            seconds: row.time.seconds_since(self.from),
+            miles: row.sailed_nm - self.from_nm,
+        }
+    }
 }
 
 /// Circumstances in which an event begins or ends.
@@ -86,8 +98,8 @@ pub(crate) struct Hypothesis {
     pub(crate) start: usize,
     /// Row whose reading it holds to be wild, the last one.
     pub(crate) wild: Option<usize>,
-    /// True until the row is read in which the last event began or ended.
-    pub(crate) is_amid: bool,
+    /// Event that began or ended in the next row.
+    pub(crate) amid: Option<Kind>,
 }
 
 /// Innovations of a row, with the loads that they had.
@@ -181,7 +193,7 @@ impl Hypothesis {
         usual: &Transition,
         silent: Silent,
     ) -> Read {
-        self.survive(row.seconds);
+        self.survive(row);
         let mut own;
         let transition = if self.events.iter().all(|event| event.until.is_some()) {
             usual
@@ -192,19 +204,16 @@ impl Hypothesis {
         };
         self.filter.advance(transition);
         // Part of the row in which something jumps lies before, and part after.
-        let amid = if std::mem::take(&mut self.is_amid) {
-            AMID_DEG * AMID_DEG
-        } else {
-            0.0
-        };
+        let amid = self.amid.take();
+        let amid_variance = |is_moved: bool| if is_moved { AMID_DEG * AMID_DEG } else { 0.0 };
         let by_difference = difference(row, &self.filter.mean, levels, silent)
             .filter(|_| !(silent.gyro || silent.satellite))
             .map(|mut scalar| {
-                scalar.variance += amid;
+                scalar.variance += amid_variance(amid.is_some_and(Kind::moves_a_reference));
                 self.filter.update(&scalar)
             });
         let mut load = deviation(row, &self.filter.mean, levels, silent);
-        load.variance += amid;
+        load.variance += amid_variance(amid.is_some());
         let read = Read {
             difference: by_difference,
             deviation: if self.holds(row) {
@@ -258,13 +267,18 @@ impl Hypothesis {
         self.filter.log_likelihood -= 0.5 * losses;
     }
 
-    /// Counts how improbable it is that its lasting events have lasted as long.
-    fn survive(&mut self, seconds: f64) {
-        for event in self.events.iter().filter(|event| event.until.is_none()) {
-            if let Ending::After(mean_s) = event.kind.row().ending {
-                self.log_prior -= seconds / mean_s;
-            }
-        }
+    /// Counts how improbable it is that its lasting events go on until a row.
+    fn survive(&mut self, row: &Row) {
+        let lasting = self.events.iter().filter(|event| event.until.is_none());
+        let survivals = lasting.map(|event| {
+            let after = event.stay_until(row);
+            let before = Stay {
+                seconds: after.seconds - row.seconds,
+                miles: after.miles - row.miles,
+            };
+            event.kind.row().ending.log_survival(before, after)
+        });
+        self.log_prior += survivals.sum::<f64>();
     }
 
     fn adjust(&self, transition: &mut Transition, row: &Row) {
@@ -297,8 +311,9 @@ impl Hypothesis {
             ship_at_end: None,
             in_port: begin.in_port,
             held_deg: begin.row.shown_deg(kind),
+            from_nm: begin.row.sailed_nm,
         }));
-        next.is_amid = !kind.row().jumps.is_empty();
+        next.amid = (!kind.row().jumps.is_empty()).then_some(kind);
         next.log_prior += log_prior;
         next
     }
@@ -319,17 +334,19 @@ impl Hypothesis {
         }
     }
 
-    /// Returns the hypotheses in which one of the lasting events ends now.
-    pub(crate) fn endings(&self, begin: &Begin, spacing_s: f64) -> Vec<Hypothesis> {
+    /// Returns the hypotheses in which one of the lasting events ended within the step before
+    /// the next row.
+    pub(crate) fn endings(&self, begin: &Begin, step: Stay) -> Vec<Hypothesis> {
         let lasting = self.events.iter().enumerate();
         let lasting = lasting.filter(|(_, event)| event.until.is_none());
         let ended = lasting.filter_map(|(i, event)| {
             let probability = match event.kind.row().ending {
-                Ending::After(mean_s) => spacing_s / mean_s,
+                Ending::Never => return None,
                 Ending::InPort(share) if begin.in_port => share,
-                _ => return None,
+                Ending::InPort(_) => return None,
+                ending => ending.probability(event.stay_until(&begin.row), step),
             };
-            Some(self.with_end(i, begin, probability.min(0.5).ln()))
+            (probability > 0.0).then(|| self.with_end(i, begin, probability.ln()))
         });
         ended.collect()
     }
@@ -341,7 +358,7 @@ impl Hypothesis {
         ended.ship_at_end = Some(Box::new(begin.ship.clone()));
         if let Some(before) = ended.before.take() {
             next.filter.restore(&before);
-            next.is_amid = !ended.kind.passes_by();
+            next.amid = (!ended.kind.passes_by()).then_some(ended.kind);
         }
         next.log_prior += log_prior;
         next

@@ -50,8 +50,61 @@ pub(crate) enum Ending {
     Never,
     /// After some time, seconds in the mean; what it moved returns.
     After(f64),
+    /// After some distance, nautical miles in the mean; what it moved returns.
+    AfterMiles(f64),
     /// At a port call, with this probability; what it moved returns.
     InPort(f64),
+}
+
+impl Ending {
+    /// Returns the logarithm of the probability that an event lasts for longer than a stay, and
+    /// the rate at which it ends then. Durations have the Erlang distribution of shape 2: few
+    /// events end at once, and few last for many times the mean.
+    fn duration(self, lasted: Stay) -> Option<Survival> {
+        let (mean, lasted) = match self {
+            Ending::After(mean_s) => (mean_s, lasted.seconds),
+            Ending::AfterMiles(mean_nm) => (mean_nm, lasted.miles),
+            Ending::Never | Ending::InPort(_) => return None,
+        };
+        let rate = 2.0 / mean;
+        let periods = rate * lasted.max(0.0);
+        Some(Survival {
+            log_probability: periods.ln_1p() - periods,
+            rate: rate * periods / (1.0 + periods),
+        })
+    }
+
+    /// Returns the logarithm of the probability that an event which has lasted so long goes on
+    /// until some later stay.
+    pub(crate) fn log_survival(self, before: Stay, after: Stay) -> f64 {
+        let at = |stay| self.duration(stay).map_or(0.0, |s| s.log_probability);
+        at(after) - at(before)
+    }
+
+    /// Returns the probability that an event which has lasted so long ended within the step
+    /// before.
+    pub(crate) fn probability(self, lasted: Stay, step: Stay) -> f64 {
+        let within = match self {
+            Ending::AfterMiles(_) => step.miles,
+            _ => step.seconds,
+        };
+        let rate = self.duration(lasted).map_or(0.0, |s| s.rate);
+        (rate * within).min(0.5)
+    }
+}
+
+/// Time and distance since an event began.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stay {
+    pub(crate) seconds: f64,
+    pub(crate) miles: f64,
+}
+
+/// Share of events that last for longer, and the rate at which they end.
+#[derive(Clone, Copy, Debug)]
+struct Survival {
+    log_probability: f64,
+    rate: f64,
 }
 
 /// Row of the table.
@@ -80,11 +133,11 @@ pub(crate) const KINDS: [KindRow; 13] = [
         a_year: 0.5,
         a_call: 0.002,
         jumps: &[
-            jump(BX, 2.0),
-            jump(BY, 2.0),
-            jump(4, 0.1),
-            jump(5, 0.1),
-            jump(6, 0.1),
+            jump(BX, 1.2),
+            jump(BY, 1.2),
+            jump(4, 0.05),
+            jump(5, 0.05),
+            jump(6, 0.05),
         ],
         ending: Ending::InPort(0.02),
     },
@@ -157,7 +210,7 @@ pub(crate) const KINDS: [KindRow; 13] = [
         a_year: 10.0,
         a_call: 0.0,
         jumps: &[],
-        ending: Ending::After(2.0 * HOUR_S),
+        ending: Ending::AfterMiles(25.0),
     },
     KindRow {
         kind: Kind::StuckCard,
@@ -203,6 +256,12 @@ impl Kind {
     /// Returns true for a disturbance of the earth's own field.
     pub(crate) fn passes_by(self) -> bool {
         matches!(self, Kind::Storm | Kind::Anomaly)
+    }
+
+    /// Returns true for an event that moves a reference.
+    pub(crate) fn moves_a_reference(self) -> bool {
+        let mut jumps = self.row().jumps.iter();
+        jumps.any(|jump| [GYRO, SATELLITE, SETTLING].contains(&jump.state))
     }
 
     /// Returns true for an instrument that stands still.

@@ -60,7 +60,7 @@ pub(crate) fn starts(
                         log_prior: f64::ln(probability * alignment.probability),
                         start: starts.len(),
                         wild: None,
-                        is_amid: false,
+                        amid: None,
                     });
                 }
             }

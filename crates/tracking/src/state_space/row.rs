@@ -26,8 +26,9 @@ pub(crate) struct Row {
     pub(crate) time: Timestamp,
     /// Time since the row before.
     pub(crate) seconds: f64,
-    /// Distance since the row before, nautical miles.
+    /// Distance since the row before, and since the first, nautical miles.
     pub(crate) miles: f64,
+    pub(crate) sailed_nm: f64,
     /// Turn since the row before, degrees.
     pub(crate) turned_deg: f64,
     /// True if another instrument gives the gyro's heading, or the satellite compass's, than in
@@ -64,6 +65,8 @@ pub(crate) struct RowMaker {
     /// Instruments that gave the headings of gyro and satellite compass last.
     sources: [Option<SourceId>; 2],
     last: Option<Last>,
+    /// Distance since the first row, nautical miles.
+    sailed_nm: f64,
     /// Horizontal field in ship axes with each memory, nT.
     lagged_nt: [[f64; 2]; 2],
 }
@@ -92,6 +95,7 @@ impl RowMaker {
             digits: [Digits::default(); 3],
             sources: [None; 2],
             last: None,
+            sailed_nm: 0.0,
             lagged_nt: [[0.0; 2]; 2],
         }
     }
@@ -110,6 +114,8 @@ impl RowMaker {
         let satellite_deg = sample.satellite.map(less);
         let heading_deg = satellite_deg.or(gyro_deg)?;
         let last = self.last;
+        let sailed_nm = last.map_or(0.0, |last| miles(last.position, sample.position));
+        self.sailed_nm += sailed_nm;
         let seconds = last.map_or(0.0, |last| sample.time.seconds_since(last.time));
         let [forward, starboard, _] = earth.in_ship_axes(heading_deg.to_radians());
         let field_nt = [forward, starboard];
@@ -129,7 +135,8 @@ impl RowMaker {
         Some(Row {
             time: sample.time,
             seconds,
-            miles: last.map_or(0.0, |last| miles(last.position, sample.position)),
+            miles: sailed_nm,
+            sailed_nm: self.sailed_nm,
             turned_deg: last.map_or(0.0, |last| wrap_180(heading_deg - last.heading_deg)),
             new_gyro,
             new_satellite,

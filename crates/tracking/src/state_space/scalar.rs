@@ -18,6 +18,9 @@ use binnacle_compass::ship::PARAMETERS;
 const GYRO_SHARE: f64 = 0.7;
 /// Reference's share of the heading at which a row is taken.
 const REFERENCE_SHARE: f64 = 0.6;
+/// Least change of an innovation by that of the compass's reading: no compass is steered by
+/// where it is less.
+const LEAST_PER_COMPASS: f64 = 0.1;
 /// Standard deviation of a reading that says nothing, degrees.
 const SAYS_NOTHING_DEG: f64 = 20.0;
 
@@ -204,13 +207,21 @@ fn deviation_by(row: &Row, mean: &[f64; STATES], reference: &Reference, variance
     let rough = innovation_at(&ship.needle(magnetic_deg, row));
     let fused_deg = magnetic_deg - (1.0 - REFERENCE_SHARE) * rough;
     let needle = ship.needle(fused_deg, row);
-    let innovation = innovation_at(&needle);
+    let innovation = innovation_at(&needle) / per_compass(&needle);
     Ship::load(row, &needle, &mut load);
     Scalar {
         innovation,
         load,
         variance,
     }
+}
+
+/// Returns the change of an innovation by that of the compass's reading, which also moves the
+/// heading at which the row is taken. Innovations are given by the compass's reading: a ship
+/// so magnetic that her compass hardly turns explains no reading by being blind to it.
+fn per_compass(needle: &Needle) -> f64 {
+    let deviation_slope = 1.0 - needle.compass_per_magnetic();
+    (1.0 + (1.0 - REFERENCE_SHARE) * deviation_slope).max(LEAST_PER_COMPASS)
 }
 
 /// Ship's magnetism with the fields of a row's circumstances in it.
@@ -240,8 +251,7 @@ impl Ship {
 
     /// Adds the slopes by the ship's states, in degrees.
     fn load(row: &Row, needle: &Needle, load: &mut [f64; STATES]) {
-        let moves = 1.0 + (1.0 - REFERENCE_SHARE) * (1.0 - needle.compass_per_magnetic());
-        let slope = needle.gradient().map(|g| (g * moves).to_degrees());
+        let slope = needle.gradient().map(f64::to_degrees);
         for j in 0..PARAMETERS {
             load[j] = slope[j] * POPULATION_SD[j];
         }

@@ -7,9 +7,7 @@ use crate::hypotheses::hypothesis::{Event, Hypothesis};
 use crate::hypotheses::kinds::Kind;
 use binnacle_compass::time::Timestamp;
 
-/// Posterior probability from which an event is detected, and seconds within which two accounts
-/// speak of the same event.
-const DETECTED: f64 = 0.98;
+/// Seconds within which two accounts speak of the same event.
 const SAME_EVENT_S: f64 = 86_400.0;
 const LEAST_WINDOW_S: f64 = 1200.0;
 /// Posterior probability below which a detected event is withdrawn.
@@ -144,7 +142,7 @@ impl Tracker {
                 continue;
             }
             let found = marginals.event(class, event.from);
-            if found.probability > DETECTED {
+            if found.probability > class.threshold() {
                 more.push(Detected {
                     class,
                     event: event.clone(),

@@ -7,7 +7,7 @@ use crate::state_space::transition::Transition;
 use binnacle_compass::azimuth::Azimuth;
 
 /// Change of a level's logarithm by which the slope is taken.
-const NUDGE: f64 = 0.25;
+const NUDGE: f64 = 0.05;
 /// Greatest knowledge of a level's logarithm, one over its variance: habits change.
 const MOST_KNOWN: f64 = 400.0;
 /// Greatest step of a level's logarithm at one row.

@@ -2,8 +2,11 @@
 
 use super::evidence_sums::EvidenceSums;
 use crate::hypotheses::hypothesis::{Begin, Event, Hypothesis};
-use crate::hypotheses::kinds::Kind;
+use crate::hypotheses::kinds::{KINDS, Kind};
 use binnacle_compass::time::Timestamp;
+
+/// Port calls of a usual ship, a year.
+const CALLS_A_YEAR: f64 = 50.0;
 
 /// Filter after some row, with the sums until then.
 #[derive(Clone, Debug)]
@@ -40,6 +43,26 @@ impl Class {
             Kind::Storm | Kind::Anomaly => Class::Passing,
             Kind::StuckCard => Class::Compass,
             _ => Class::Reference,
+        }
+    }
+
+    /// Returns the posterior probability from which an event is detected: of as many events a
+    /// year as the table has, so many are false as are allowed.
+    pub(super) fn threshold(self) -> f64 {
+        let of_class = KINDS.iter().filter(|row| Class::of(row.kind) == self);
+        let a_year: f64 = of_class
+            .map(|row| row.a_year + row.a_call * CALLS_A_YEAR)
+            .sum();
+        1.0 - self.false_alarms_a_year() / a_year
+    }
+
+    /// Returns the false alarms that are allowed, a year: a ship's master who is called often
+    /// for nothing does not come.
+    fn false_alarms_a_year(self) -> f64 {
+        match self {
+            Class::Ship => 0.1,
+            Class::Reference | Class::Passing => 0.2,
+            Class::Compass => 0.02,
         }
     }
 }

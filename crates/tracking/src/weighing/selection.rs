@@ -43,7 +43,7 @@ impl Tracker {
                     _ if event.until.is_some() => SETTLED_S,
                     Ending::Never => SETTLED_S,
                     Ending::InPort(_) => OUTDATED_S,
-                    Ending::After(_) => f64::INFINITY,
+                    Ending::After(_) | Ending::AfterMiles(_) => f64::INFINITY,
                 };
                 age_s <= judged_s
             });

@@ -4,7 +4,7 @@ use super::evidence_sums::EvidenceSums;
 use super::learning::Learning;
 use super::records::{Checkpoint, Detected, Tried};
 use crate::hypotheses::hypothesis::{Begin, Hypothesis, Read};
-use crate::hypotheses::kinds::Kind;
+use crate::hypotheses::kinds::{Kind, Stay};
 use crate::hypotheses::starts::starts;
 use crate::state_space::levels::Levels;
 use crate::state_space::row::{Placed, Row, RowMaker};
@@ -226,12 +226,16 @@ impl Tracker {
 
     fn suppose_endings(&mut self, row: &Row) {
         let begin = self.begin(row);
-        let spacing_s = END_ROWS as f64 * row.seconds.clamp(60.0, 3600.0);
+        let rows = END_ROWS as f64;
+        let step = Stay {
+            seconds: rows * row.seconds.clamp(60.0, 3600.0),
+            miles: rows * row.miles.clamp(0.2, 15.0),
+        };
         let best = self.best();
         let mut ended: Vec<Hypothesis> = Vec::new();
         for hypothesis in &self.bank {
             if hypothesis.log_weight() > best - PLAUSIBLE {
-                ended.extend(hypothesis.endings(&begin, spacing_s));
+                ended.extend(hypothesis.endings(&begin, step));
             }
         }
         self.bank.extend(ended);
