@@ -16,6 +16,7 @@ use binnacle_compass::azimuth::{Azimuth, AzimuthKind};
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 use binnacle_compass::time::Timestamp;
+use std::ops::Deref;
 use std::sync::Arc;
 
 /// Growth of a drifting ship's (bx, by), nT squared a second: 2 µT in thirty days.
@@ -74,6 +75,22 @@ impl Event {
     }
 }
 
+/// Event with its probability under a hypothesis: less than one where hypotheses with and
+/// without it have become one.
+#[derive(Clone, Debug)]
+pub(crate) struct Supposed {
+    pub(crate) event: Arc<Event>,
+    pub(crate) probability: f64,
+}
+
+impl Deref for Supposed {
+    type Target = Event;
+
+    fn deref(&self) -> &Event {
+        &self.event
+    }
+}
+
 /// Circumstances in which an event begins or ends.
 #[derive(Clone, Debug)]
 pub(crate) struct Begin {
@@ -91,7 +108,7 @@ pub(crate) struct Begin {
 #[derive(Clone, Debug)]
 pub(crate) struct Hypothesis {
     pub(crate) filter: Filter,
-    pub(crate) events: Vec<Arc<Event>>,
+    pub(crate) events: Vec<Supposed>,
     /// Logarithm of the prior probability of its events.
     pub(crate) log_prior: f64,
     /// Number of the starting guess that it descends from.
@@ -302,7 +319,7 @@ impl Hypothesis {
         for jump in kind.row().jumps {
             next.filter.covariance[jump.state][jump.state] += jump.sd * jump.sd;
         }
-        next.events.push(Arc::new(Event {
+        let event = Event {
             kind,
             from: begin.time,
             until: None,
@@ -312,7 +329,11 @@ impl Hypothesis {
             in_port: begin.in_port,
             held_deg: begin.row.shown_deg(kind),
             from_nm: begin.row.sailed_nm,
-        }));
+        };
+        next.events.push(Supposed {
+            event: Arc::new(event),
+            probability: 1.0,
+        });
         next.amid = (!kind.row().jumps.is_empty()).then_some(kind);
         next.log_prior += log_prior;
         next
@@ -342,7 +363,7 @@ impl Hypothesis {
         let ended = lasting.filter_map(|(i, event)| {
             let probability = match event.kind.row().ending {
                 Ending::Never => return None,
-                Ending::InPort(share) if begin.in_port => share,
+                Ending::InPort(share) if begin.in_port => share * event.probability,
                 Ending::InPort(_) => return None,
                 ending => ending.probability(event.stay_until(&begin.row), step),
             };
@@ -353,7 +374,7 @@ impl Hypothesis {
 
     pub(crate) fn with_end(&self, event: usize, begin: &Begin, log_prior: f64) -> Hypothesis {
         let mut next = self.clone();
-        let ended = Arc::make_mut(&mut next.events[event]);
+        let ended = Arc::make_mut(&mut next.events[event].event);
         ended.until = Some(begin.time);
         ended.ship_at_end = Some(Box::new(begin.ship.clone()));
         if let Some(before) = ended.before.take() {

@@ -12,8 +12,10 @@ use binnacle_compass::time::Timestamp;
 use std::f64::consts::TAU;
 
 const DAY_S: f64 = 86_400.0;
-/// Gap between rows that counts as a port call, seconds.
+/// Time between rows, beyond that of sailing from one to the other, that counts as a port
+/// call, seconds. Where the speed is not known the ship sails at the usual one, knots.
 const PORT_GAP_S: f64 = 2.5 * 3600.0;
+const USUAL_KN: f64 = 10.0;
 /// Readings before the step of an instrument is judged, share of them that lie on it, and the
 /// distance within which one does.
 const FEWEST_READINGS: u32 = 10;
@@ -75,6 +77,7 @@ pub(crate) struct RowMaker {
 struct Last {
     time: Timestamp,
     position: Position,
+    sog_kn: Option<f64>,
     heading_deg: f64,
     field_nt: [f64; 2],
 }
@@ -123,6 +126,7 @@ impl RowMaker {
         self.last = Some(Last {
             time: sample.time,
             position: sample.position,
+            sog_kn: sample.sog_kn,
             heading_deg,
             field_nt,
         });
@@ -140,7 +144,11 @@ impl RowMaker {
             turned_deg: last.map_or(0.0, |last| wrap_180(heading_deg - last.heading_deg)),
             new_gyro,
             new_satellite,
-            after_port: seconds > PORT_GAP_S,
+            after_port: last.is_some_and(|last| {
+                let speed_kn = last.sog_kn.or(sample.sog_kn).unwrap_or(USUAL_KN);
+                let sailing_s = 3600.0 * sailed_nm / speed_kn.max(1.0);
+                seconds - sailing_s > PORT_GAP_S
+            }),
             compass_deg: sample.compass.degrees(),
             gyro_deg,
             satellite_deg,

@@ -3,7 +3,7 @@
 use super::records::{Class, Detected};
 use super::selection::SETTLED_S;
 use super::tracker::Tracker;
-use crate::hypotheses::hypothesis::{Event, Hypothesis};
+use crate::hypotheses::hypothesis::{Event, Hypothesis, Supposed};
 use crate::hypotheses::kinds::Kind;
 use binnacle_compass::time::Timestamp;
 
@@ -46,7 +46,7 @@ impl<'a> Marginals<'a> {
     fn window_s(&self, class: Class, from: Timestamp) -> f64 {
         // The nearest is the event itself.
         let mut nearest = [f64::INFINITY; 2];
-        for event in self.bank[0].events.iter() {
+        for event in self.bank[0].events.iter().filter(|e| e.probability > 0.5) {
             let apart = event.from.seconds_since(from).abs();
             if Class::of(event.kind) == class && apart < nearest[1] {
                 nearest = [nearest[0].min(apart), nearest[0].max(apart)];
@@ -70,22 +70,36 @@ impl<'a> Marginals<'a> {
         };
         let within_s = self.window_s(class, from);
         for (hypothesis, weight) in self.bank.iter().zip(&self.weights) {
-            let Some(event) = nearest(hypothesis, class, from, within_s) else {
-                continue;
-            };
-            found.probability += weight;
-            match found.kinds.iter_mut().find(|(kind, _)| *kind == event.kind) {
-                Some((_, sum)) => *sum += weight,
-                None => found.kinds.push((event.kind, *weight)),
+            let mut sum = 0.0;
+            for event in within(hypothesis, class, from, within_s) {
+                let weight = weight * event.probability;
+                sum += weight;
+                match found.kinds.iter_mut().find(|(kind, _)| *kind == event.kind) {
+                    Some((_, sum)) => *sum += weight,
+                    None => found.kinds.push((event.kind, weight)),
+                }
+                if weight > 0.02 {
+                    found.earliest = found.earliest.min(event.from);
+                    found.latest = found.latest.max(event.from);
+                }
             }
-            if *weight > 0.02 {
-                found.earliest = found.earliest.min(event.from);
-                found.latest = found.latest.max(event.from);
-            }
+            found.probability += sum.min(*weight);
         }
         found.kinds.sort_by(|a, b| b.1.total_cmp(&a.1));
         found
     }
+}
+
+/// Returns a hypothesis's events of a class within some seconds of a time.
+fn within(
+    hypothesis: &Hypothesis,
+    class: Class,
+    from: Timestamp,
+    within_s: f64,
+) -> impl Iterator<Item = &Supposed> {
+    hypothesis.events.iter().filter(move |event| {
+        Class::of(event.kind) == class && event.from.seconds_since(from).abs() <= within_s
+    })
 }
 
 /// Returns a hypothesis's event of a class nearest to a time, within some seconds.
@@ -95,13 +109,10 @@ fn nearest(
     from: Timestamp,
     within_s: f64,
 ) -> Option<&Event> {
-    let events = hypothesis
-        .events
-        .iter()
-        .filter(|e| Class::of(e.kind) == class);
+    let likely = within(hypothesis, class, from, within_s).filter(|e| e.probability > 0.5);
     let apart = |e: &Event| e.from.seconds_since(from).abs();
-    let near = events.map(AsRef::as_ref).filter(|e| apart(e) <= within_s);
-    near.min_by(|a: &&Event, b| apart(a).total_cmp(&apart(b)))
+    let events = likely.map(|supposed| supposed.event.as_ref());
+    events.min_by(|a: &&Event, b| apart(a).total_cmp(&apart(b)))
 }
 
 impl Tracker {
@@ -130,7 +141,7 @@ impl Tracker {
             }
         }
         let mut more = Vec::new();
-        for event in self.bank[0].events.iter().map(AsRef::as_ref) {
+        for event in self.bank[0].events.iter().filter(|e| e.probability > 0.5) {
             let class = Class::of(event.kind);
             let is_detected = |detected: &Detected| {
                 detected.class == class
@@ -145,7 +156,7 @@ impl Tracker {
             if found.probability > class.threshold() {
                 more.push(Detected {
                     class,
-                    event: event.clone(),
+                    event: Event::clone(event),
                     at: now,
                     withdrawn: None,
                     kinds: found.kinds,

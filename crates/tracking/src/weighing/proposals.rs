@@ -124,8 +124,7 @@ impl Tracker {
             }
         }
         for Proposal { kind, start } in &proposals {
-            let hypothesis = self.replay(start.place, kind.kind, start.log_prior);
-            self.bank.push(hypothesis);
+            self.replay(start.place, kind.kind, start.log_prior);
         }
         let tried = proposals.iter().map(|p| self.tried_at(p.kind, p.start));
         self.tried.extend(tried.collect::<Vec<_>>());
@@ -142,8 +141,7 @@ impl Tracker {
         let tried = self.tried_at(kind, start);
         if !self.was_tried(kind.kind, tried.from, start.score) {
             self.tried.push(tried);
-            let hypothesis = self.replay(start.place, kind.kind, start.log_prior);
-            self.bank.push(hypothesis);
+            self.replay(start.place, kind.kind, start.log_prior);
         }
     }
 
@@ -155,24 +153,33 @@ impl Tracker {
         }
     }
 
-    /// Returns true if an instrument stood since a row while the ship turned.
+    /// Returns true if an instrument stood since a row while the ship turned by the last two
+    /// rows: one may be wild.
     fn seems_stuck(&self, kind: Kind, after: usize) -> bool {
-        let first = &self.rows[(after - self.first_kept).min(self.rows.len() - 1)];
-        let last = &self.rows[self.rows.len() - 1];
+        let first = &self.rows[(after - self.first_kept).saturating_sub(1)];
+        let count = self.rows.len();
+        if count < 2 {
+            return false;
+        }
         let turned = |of: fn(&Row) -> Option<f64>| {
-            of(first)
-                .zip(of(last))
-                .map_or(0.0, |(a, b)| wrap_180(b - a).abs())
+            let turned = |last: &Row| {
+                let both = of(first).zip(of(last));
+                both.map_or(0.0, |(a, b)| wrap_180(b - a).abs())
+            };
+            [count - 2, count - 1].map(|k| turned(&self.rows[k]))
         };
         let compass = turned(|row| Some(row.compass_deg));
         let gyro = turned(|row| row.gyro_deg);
         let satellite = turned(|row| row.satellite_deg);
         let (own, others) = match kind {
-            Kind::StuckCard => (compass, gyro.max(satellite)),
-            Kind::StuckGyro => (gyro, compass),
-            _ => (satellite, compass),
+            Kind::StuckCard => (compass, [gyro, satellite]),
+            Kind::StuckGyro => (gyro, [compass, satellite]),
+            _ => (satellite, [compass, gyro]),
         };
-        own < STOOD_DEG && others > TURNED_DEG
+        own.iter().all(|deg| *deg < STOOD_DEG)
+            && others
+                .iter()
+                .any(|other| other.iter().all(|deg| *deg > TURNED_DEG))
     }
 
     /// Returns the log prior of an event of a kind between a checkpoint and the next; none if it
@@ -247,16 +254,20 @@ impl Tracker {
         })
     }
 
-    pub(super) fn replay(&mut self, place: usize, kind: Kind, log_prior: f64) -> Hypothesis {
+    /// Supposes an event after a checkpoint under each hypothesis that was plausible there, and
+    /// reads the rows since.
+    fn replay(&mut self, place: usize, kind: Kind, log_prior: f64) {
         let levels = *self.learning.levels();
         let checkpoint = &self.checkpoints[place];
-        let mut hypothesis = checkpoint
-            .lead
-            .with_event(kind, &checkpoint.begin, log_prior);
-        for row in self.rows.iter().skip(checkpoint.after - self.first_kept) {
-            let usual = Transition::to(row, &levels);
-            hypothesis.read(row, &levels, &usual);
-        }
-        hypothesis
+        let supposing = |before: &Hypothesis| {
+            let mut hypothesis = before.with_event(kind, &checkpoint.begin, log_prior);
+            for row in self.rows.iter().skip(checkpoint.after - self.first_kept) {
+                let usual = Transition::to(row, &levels);
+                hypothesis.read(row, &levels, &usual);
+            }
+            hypothesis
+        };
+        let more: Vec<Hypothesis> = checkpoint.plausible.iter().map(supposing).collect();
+        self.bank.extend(more);
     }
 }

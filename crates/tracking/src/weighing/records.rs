@@ -13,7 +13,8 @@ const CALLS_A_YEAR: f64 = 50.0;
 pub(super) struct Checkpoint {
     pub(super) after: usize,
     pub(super) time: Timestamp,
-    pub(super) lead: Hypothesis,
+    /// Plausible hypotheses, the lead first.
+    pub(super) plausible: Vec<Hypothesis>,
     pub(super) sums: EvidenceSums,
     pub(super) begin: Begin,
 }

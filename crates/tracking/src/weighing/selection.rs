@@ -1,11 +1,12 @@
 //! Selection of hypotheses: the lead, those that are dropped, and those that are merged.
 
 use super::tracker::Tracker;
-use crate::hypotheses::hypothesis::Hypothesis;
+use crate::hypotheses::hypothesis::{Hypothesis, Supposed};
 use crate::hypotheses::kinds::{Ending, Kind};
 use crate::state_space::filter::Filter;
 use crate::state_space::states::STATES;
 use binnacle_compass::time::Timestamp;
+use std::sync::Arc;
 
 /// Log weight below the best's at which a hypothesis is given up.
 const GIVEN_UP: f64 = 16.0;
@@ -17,6 +18,8 @@ const TAKES_LEAD: f64 = 1.0;
 const STARTING_ROWS: usize = 1000;
 /// Seconds within which two events of a kind are the same.
 const SAME_S: f64 = 6.0 * 3600.0;
+/// Probability below which an event is left out of a hypothesis.
+const NEGLIGIBLE_EVENT: f64 = 0.01;
 /// Rows between looks for hypotheses that have become alike, and the difference of means in
 /// standard deviations up to which they are.
 const ALIKE_ROWS: usize = 36;
@@ -113,12 +116,17 @@ impl Tracker {
     }
 }
 
+/// Returns the events that a hypothesis supposes, without those that it only may have.
+fn likely(hypothesis: &Hypothesis) -> impl Iterator<Item = &Supposed> {
+    hypothesis.events.iter().filter(|e| e.probability > 0.5)
+}
+
 /// Returns true if two hypotheses suppose the same events.
 fn is_same(a: &Hypothesis, b: &Hypothesis, merges_starts: bool) -> bool {
     a.wild == b.wild
         && (merges_starts || a.start == b.start)
-        && a.events.len() == b.events.len()
-        && a.events.iter().zip(&b.events).all(|(a, b)| {
+        && likely(a).count() == likely(b).count()
+        && likely(a).zip(likely(b)).all(|(a, b)| {
             let same_end = match (a.until, b.until) {
                 (None, None) => true,
                 (Some(a), Some(b)) => a.seconds_since(b).abs() <= SAME_S,
@@ -134,7 +142,12 @@ fn is_alike(a: &Hypothesis, b: &Hypothesis) -> bool {
     let moving = |h: &Hypothesis| -> Vec<Kind> {
         h.lasting()
             .filter(|kind| !kind.row().jumps.is_empty() || !kind.changes_deviation())
-            .filter(|kind| !matches!(kind, Kind::Strike | Kind::Cargo | Kind::Alignment))
+            .filter(|kind| {
+                !matches!(
+                    kind,
+                    Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::GyroSettling
+                )
+            })
             .collect()
     };
     moving(a) == moving(b)
@@ -151,6 +164,7 @@ fn is_alike(a: &Hypothesis, b: &Hypothesis) -> bool {
 fn merge(into: &mut Hypothesis, other: &Hypothesis) {
     let (a, b) = (into.log_weight(), other.log_weight());
     let share = 1.0 / (1.0 + (a - b).exp());
+    mix_events(&mut into.events, &other.events, share);
     let filter: Filter = into.filter.mixed_with(&other.filter, share);
     let weight = a.max(b) + (-(a - b).abs()).exp().ln_1p();
     into.log_prior += weight - a;
@@ -159,4 +173,28 @@ fn merge(into: &mut Hypothesis, other: &Hypothesis) {
         log_likelihood,
         ..filter
     };
+}
+
+/// Mixes another hypothesis's events into some, `share` being the other's: each event keeps its
+/// probability over both.
+fn mix_events(events: &mut Vec<Supposed>, others: &[Supposed], share: f64) {
+    for event in events.iter_mut() {
+        let other = others.iter().find(|other| is_one(event, other));
+        event.probability *= 1.0 - share;
+        event.probability += share * other.map_or(0.0, |other| other.probability);
+    }
+    for other in others {
+        if !events.iter().any(|event| is_one(event, other)) {
+            events.push(Supposed {
+                event: Arc::clone(&other.event),
+                probability: share * other.probability,
+            });
+        }
+    }
+    events.retain(|event| event.probability > NEGLIGIBLE_EVENT);
+}
+
+/// Returns true if two hypotheses speak of one event.
+fn is_one(a: &Supposed, b: &Supposed) -> bool {
+    a.kind == b.kind && a.from.seconds_since(b.from).abs() <= SAME_S
 }

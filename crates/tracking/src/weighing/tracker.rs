@@ -27,6 +27,10 @@ const END_ROWS: usize = 6;
 const AZIMUTH_NEAR_S: f64 = 6.0 * 3600.0;
 /// Log weight below the best's down to which a hypothesis has branches.
 const PLAUSIBLE: f64 = 6.0;
+/// Log weight below the best's down to which an event is supposed after a hypothesis, too, and
+/// the most that are so beside the lead.
+const ABOUT_AS_LIKELY: f64 = 4.0;
+const ALTERNATIVES: usize = 3;
 /// Log weight below the best's from which a hypothesis is left out of the mixture.
 const NEGLIGIBLE: f64 = 7.0;
 
@@ -180,10 +184,20 @@ impl Tracker {
         self.checkpoints.push_back(Box::new(Checkpoint {
             after: self.count,
             time,
-            lead: self.bank[0].clone(),
+            plausible: self.plausible(),
             sums: self.sums,
             begin,
         }));
+    }
+
+    /// Returns the lead with the hypotheses that are about as likely: what happens next may
+    /// happen under each.
+    fn plausible(&self) -> Vec<Hypothesis> {
+        let best = self.best();
+        let others = self.bank[1..].iter();
+        let others = others.filter(|h| h.log_weight() > best - ABOUT_AS_LIKELY);
+        let lead = std::iter::once(&self.bank[0]);
+        lead.chain(others.take(ALTERNATIVES)).cloned().collect()
     }
 
     fn read_all(&mut self, row: &Row) -> Tracked {
