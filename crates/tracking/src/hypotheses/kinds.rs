@@ -130,7 +130,7 @@ const DAY_S: f64 = 86_400.0;
 pub(crate) const KINDS: [KindRow; 13] = [
     KindRow {
         kind: Kind::Strike,
-        a_year: 0.5,
+        a_year: 1.0,
         a_call: 0.002,
         jumps: &[
             jump(BX, 1.2),
