@@ -151,8 +151,11 @@ fn fit_usable(
         },
     )
     .ok_or(FitError::NotConverged)?;
+    let used = fitted.rows.iter().filter(|r| r.weight >= REJECTED_BELOW);
+    let squares: f64 = used.clone().map(|r| r.residual_deg.powi(2)).sum();
+    let samples_used = used.count() as u64;
     let residuals = fitted.rows.iter().map(|row| row.residual_deg);
-    let caution = residual_check::check_residuals(residuals, &fitted.levels)?;
+    let caution = residual_check::check_residuals(residuals, &fitted.levels, samples_used)?;
     check_needle(&fitted.parameters, rows)?;
     let mut quality = fitted.quality;
     quality.cautions.extend(caution);
@@ -171,9 +174,6 @@ fn fit_usable(
             weight: row.weight,
         };
     }
-    let used = fitted.rows.iter().filter(|r| r.weight >= REJECTED_BELOW);
-    let squares: f64 = used.clone().map(|r| r.residual_deg.powi(2)).sum();
-    let samples_used = used.count() as u64;
     let model = Model {
         parameters_over_lambda: fitted.parameters,
         constant_deg: fitted.constant_deg,
