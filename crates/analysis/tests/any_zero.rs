@@ -66,7 +66,6 @@ fn twenty_ships_at_each_angle_have_their_true_deviation_within_the_band() {
             let variety = [Variety::Rich, Variety::Medium, Variety::Poor][seed as usize % 3];
             sail(seed, variety, 20.0, &Faults::USUAL)
         });
-        println!("{by_deg}: {share}");
         assert!(share >= 0.9, "{by_deg}: {share}");
     }
 }
@@ -77,7 +76,6 @@ fn a_few_days_on_one_sea_suffice_for_an_honest_band() {
         let share = held(by_deg, |seed| {
             sail(seed, Variety::Poor, 6.0, &Faults::USUAL)
         });
-        println!("{by_deg}: {share}");
         assert!(share >= 0.9, "{by_deg}: {share}");
     }
 }
@@ -94,7 +92,6 @@ fn half_of_the_headings_suffice_for_an_honest_band() {
                 .retain(|o| wrap_180(o.compass.degrees() - alongside).abs() < 90.0);
             voyage
         });
-        println!("{by_deg}: {share}");
         assert!(share >= 0.9, "{by_deg}: {share}");
     }
 }
