@@ -402,3 +402,33 @@ fn the_headings_that_are_missing_are_named() {
     let refused = fit(&observations).unwrap_err();
     assert!(matches!(refused, FitError::NoWeight { .. }), "{refused}");
 }
+
+/// Three ships by turns, or cargo that turns the compass by half a right angle in half of the
+/// time: no model with a caution beside it.
+#[test]
+fn samples_that_no_one_ship_explains_are_refused_by_name() {
+    for seed in 8400..8403 {
+        let sound = sail(seed, Variety::Medium, 30.0, &Faults::USUAL).observations;
+        let half = sound.len() / 2;
+        let three_ships = |row: usize, _: f64| [0.0, 40.0, -50.0][row % 3];
+        let cargo = |row: usize, sin: f64| if row < half { 35.0 * sin } else { 0.0 };
+        let offsets: [&dyn Fn(usize, f64) -> f64; 2] = [&three_ships, &cargo];
+        for off in offsets {
+            let mut observations = sound.clone();
+            for (row, o) in observations.iter_mut().enumerate() {
+                let off = off(row, o.compass.radians().sin());
+                o.deviation = Deviation::new(o.deviation.degrees_east() + off).unwrap();
+            }
+            let refused = fit(&observations).map(|fit| fit.model.rms_deg).unwrap_err();
+            assert!(
+                matches!(
+                    refused,
+                    FitError::Contradictory { .. }
+                        | FitError::FewSamplesUsed { .. }
+                        | FitError::ModelDoesNotExplain { .. }
+                ),
+                "{seed}: {refused}"
+            );
+        }
+    }
+}

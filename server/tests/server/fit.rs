@@ -70,6 +70,23 @@ fn at_one_latitude_only_the_robust_method_fits() {
     }
 }
 
+/// A true heading made from the compass and the variation, in tenths.
+#[test]
+fn a_reference_that_is_the_compass_itself_is_refused_by_every_method() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = "variation_deg,h_nt,z_nt,compass_deg,reference_deg\n".to_owned();
+    for row in 0..80_i32 {
+        let compass = f64::from(row * 997 % 3600) / 10.0;
+        let reference = (compass + 355.0) % 360.0;
+        writeln!(text, "-5,24000,38500,{compass:.1},{reference:.1}").unwrap();
+    }
+    std::fs::write(folder.path().join("copy.csv"), text).unwrap();
+    for method in METHODS {
+        let refused = run(folder.path(), &["fit", "copy.csv", "--method", method]);
+        assert_refused(&refused, &["copy.csv", "the compass's own"]);
+    }
+}
+
 #[test]
 fn help_describes_the_methods() {
     let folder = tempfile::tempdir().unwrap();

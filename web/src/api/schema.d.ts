@@ -7940,6 +7940,50 @@ export interface components {
         } | {
             /**
              * Format: double
+             * @description Least scatter of independent instruments with the same digits, degrees.
+             */
+            least_deg: number;
+            /** @enum {string} */
+            reason: "reference_is_compass";
+            /**
+             * Format: int64
+             * @description Number of samples with the reference.
+             */
+            samples: number;
+            /**
+             * Format: double
+             * @description Scatter of reference less compass about a smooth curve, degrees.
+             */
+            scatter_deg: number;
+        } | {
+            /**
+             * Format: int64
+             * @description Number of samples with a reference.
+             */
+            found: number;
+            /** @enum {string} */
+            reason: "few_samples_used";
+            /**
+             * Format: int64
+             * @description Number of samples with weight in the fit.
+             */
+            used: number;
+        } | {
+            /**
+             * Format: double
+             * @description Greatest allowed value, degrees.
+             */
+            allowed_deg: number;
+            /** @enum {string} */
+            reason: "model_does_not_explain";
+            /**
+             * Format: double
+             * @description Robust standard deviation of the residuals about zero, degrees.
+             */
+            residual_deg: number;
+        } | {
+            /**
+             * Format: double
              * @description Greatest allowed value, degrees.
              */
             allowed_deg: number;

@@ -73,6 +73,28 @@ export function refusalWords(refusal: Refusal): RefusalWords | null {
         missing: t().contradictory(degrees(refusal.residual_deg), degrees(refusal.allowed_deg, 0)),
         todo: t().contradictoryTodo,
       };
+    case 'reference_is_compass':
+      return {
+        missing: t().referenceIsCompass(
+          count(refusal.samples),
+          degrees(refusal.scatter_deg, 2),
+          degrees(refusal.least_deg, 2),
+        ),
+        todo: t().referenceIsCompassTodo,
+      };
+    case 'few_samples_used':
+      return {
+        missing: t().fewSamplesUsed(count(refusal.used), count(refusal.found)),
+        todo: t().fewSamplesUsedTodo,
+      };
+    case 'model_does_not_explain':
+      return {
+        missing: t().modelDoesNotExplain(
+          degrees(refusal.residual_deg),
+          degrees(refusal.allowed_deg, 0),
+        ),
+        todo: t().modelDoesNotExplainTodo,
+      };
     case 'not_converged':
       return { missing: t().notConverged, todo: t().notConvergedTodo };
     default:

@@ -176,6 +176,9 @@ describe('in words', () => {
       { reason: 'no_reference', readings: 40 },
       { reason: 'no_weight', samples: 40 },
       { reason: 'contradictory', residual_deg: 10.52, allowed_deg: 3 },
+      { reason: 'reference_is_compass', samples: 400, scatter_deg: 0.03, least_deg: 0.082 },
+      { reason: 'few_samples_used', used: 12, found: 400 },
+      { reason: 'model_does_not_explain', residual_deg: 9.66, allowed_deg: 5 },
     ];
     const found = refusals.map((refusal) => refusalWords(refusal));
     expect(new Set(found.map((words) => words?.todo)).size).toBe(refusals.length);
@@ -187,6 +190,9 @@ describe('in words', () => {
     expect(found[10]?.missing).toContain(
       'differ by 10.5°, where no instruments leave more than 3°',
     );
+    expect(found[11]?.missing).toContain('scatters by only 0.03°');
+    expect(found[12]?.missing).toContain('Only 12 of 400 samples');
+    expect(found[13]?.missing).toContain('misses its own samples by 9.7°');
     expect(refusalWords({ reason: 'moonlight' } as unknown as Refusal)).toBeNull();
   });
 });

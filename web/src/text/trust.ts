@@ -109,6 +109,18 @@ export const refusal = {
     `The only reference stood still in ${readings} readings while the compass turned: it is stuck, or another source is taken for it.`,
   referenceStuckTodo:
     'Check on board which instrument and which sentence is taken for the gyro or satellite compass, and that it follows the ship round. A model comes with the samples after that.',
+  referenceIsCompass: (samples: string, scatter: string, least: string) =>
+    `The heading taken for the true one is the compass’s own. In ${samples} samples their difference scatters by only ${scatter}, where two instruments with these digits leave at least ${least}.`,
+  referenceIsCompassTodo:
+    'Check on board which instrument and which sentence is taken for the gyro or satellite compass. It must not be a heading computed from the magnetic compass and the variation.',
+  fewSamplesUsed: (used: string, found: string) =>
+    `Only ${used} of ${found} samples agree with any one ship’s magnetism.`,
+  fewSamplesUsedTodo:
+    'Check whether the compass was moved, or the gyro was wrong, for part of the time, and report it in the logbook. A file is better split there.',
+  modelDoesNotExplain: (residual: string, allowed: string) =>
+    `The best model misses its own samples by ${residual}. A compass that deviates by more than ${allowed} has to be adjusted.`,
+  modelDoesNotExplainTodo:
+    'Check whether the compass, its correctors or the gyro were changed in between, and report it in the logbook.',
   notConverged: 'The samples contradict each other, or any ship.',
   notConvergedTodo:
     'Check on board that compass, gyro and satellite compass are taken from the right instruments, and report in the logbook what changed the ship’s magnetism meanwhile: cargo, repairs, lightning, correctors.',

@@ -37,5 +37,5 @@ pub(crate) use rows::{
     Unknowns, frames, row,
 };
 pub use rows::{Direction, Needle, Scatter, WhiteNoise};
-pub(crate) use solve::{Options, RoughEstimate, estimate, estimate_roughly};
+pub(crate) use solve::{Options, RoughEstimate, Turn, estimate, estimate_roughly};
 pub(crate) use undated_rows::are_times_plausible;

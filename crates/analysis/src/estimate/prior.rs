@@ -2,6 +2,7 @@
 
 use binnacle_compass::ship::PARAMETERS;
 use nalgebra::{SMatrix, SVector};
+use std::f64::consts::PI;
 
 /// Standard deviations over ships of bx, χ13, by, χ23, χ11−χ22, χ12 and χ21, all over λ;
 /// fields in nT. Of the size of the ship in Basterretxea-Iribar, Sotés & Uriarte 2016.
@@ -94,6 +95,17 @@ impl Prior {
         }
     }
 
+    /// Returns the prior of the same ship whose compass's zero is known to `sd_deg` only.
+    pub(crate) fn with_any_constant(&self, sd_deg: f64) -> Prior {
+        let mut prior = self.clone();
+        for j in 0..PARAMETERS {
+            prior.covariance[j][PARAMETERS] = 0.0;
+            prior.covariance[PARAMETERS][j] = 0.0;
+        }
+        prior.covariance[PARAMETERS][PARAMETERS] = sd_deg * sd_deg;
+        prior
+    }
+
     /// Returns mean and information in units of the population's standard deviations; none
     /// when the covariance is not positive definite.
     pub(crate) fn in_population_units(&self) -> Option<([f64; 8], SMatrix<f64, 8, 8>)> {
@@ -145,6 +157,18 @@ pub(crate) fn tail_factors(
     let mut out = [factor(DEGREES_OF_FREEDOM[0], 7.0, distance(0, PARAMETERS)); 8];
     out[PARAMETERS] = factor(DEGREES_OF_FREEDOM[1], 1.0, distance(PARAMETERS, 8));
     out
+}
+
+/// Returns the prior's density per degree where the constant is `off_deg` beyond its mean:
+/// Student's with the constant's degrees of freedom.
+pub(crate) fn constant_density(prior: &Prior, off_deg: f64) -> f64 {
+    let variance = prior.covariance[PARAMETERS][PARAMETERS];
+    // Γ(2)/(Γ(3/2) √(3π)) = 2/(π√3), for three degrees of freedom.
+    const {
+        assert!(DEGREES_OF_FREEDOM[1] == 3.0);
+    }
+    let peak = 2.0 / (PI * 3_f64.sqrt() * variance.sqrt());
+    peak * (1.0 + off_deg * off_deg / (3.0 * variance)).powi(-2)
 }
 
 /// Returns the population's standard deviations, the constant's (one degree) last: the

@@ -10,6 +10,7 @@ mod paper;
 mod reference;
 mod residual_check;
 mod robust;
+mod shared_noise;
 mod time_outliers;
 
 pub use crate::gyro_speed_error::gyro_speed_error_deg;
@@ -23,3 +24,4 @@ pub(crate) use robust::fit_roughly;
 pub use robust::{
     REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, fit_known_ship, fit_robust,
 };
+pub use shared_noise::{HeadingPair, check_independence, check_readings_independence};

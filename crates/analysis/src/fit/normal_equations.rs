@@ -1,9 +1,11 @@
 //! Normal equations of the two fits by ordinary least squares, for noise that is assumed
 //! independent from row to row.
 
-use crate::estimate::POPULATION_SD;
-use binnacle_compass::model::{Covariance, Identifiable};
+use crate::estimate::{POPULATION_SD, Prior, Turn};
+use crate::observation::Observation;
+use binnacle_compass::model::{Covariance, Identifiable, Model};
 use binnacle_compass::result::FitError;
+use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
 use binnacle_compass::ship::PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 
@@ -52,6 +54,32 @@ pub(super) fn covariance(inverse: &Matrix, variance: f64) -> Covariance {
         }
     }
     covariance
+}
+
+/// Returns the rotation of the compass against the keel; none where it is mounted straight.
+pub(super) fn find_turn(rows: &[Observation]) -> Option<Turn> {
+    Turn::find(rows, &Prior::population(REFERENCE_CONSTANT_SD_DEG))
+}
+
+/// Returns the model of a straightened compass as that of the compass as mounted. All of
+/// the rotation is in the constant.
+pub(super) fn as_mounted(straight: Model, turn: Option<Turn>) -> Model {
+    let Some(turn) = turn else {
+        return straight;
+    };
+    let matrix = turn.matrix(&[1.0; 8]);
+    let covariance = straight.covariance.map(|covariance| {
+        let of_straight = SMatrix::<f64, 8, 8>::from_fn(|i, j| covariance[i][j]);
+        let turned = matrix * of_straight * matrix.transpose();
+        std::array::from_fn(|i| std::array::from_fn(|j| turned[(i, j)]))
+    });
+    Model {
+        parameters_over_lambda: turn.parameters(&straight.parameters_over_lambda),
+        constant_deg: turn.constant_deg(straight.constant_deg),
+        covariance,
+        identifiable: covariance.as_ref().map(identifiable),
+        ..straight
+    }
 }
 
 /// Returns the parameters whose standard error is below half of the population's standard

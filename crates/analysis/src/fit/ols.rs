@@ -6,7 +6,9 @@
 //! and there is no prior. The product's own fit is [`fit_robust`](super::fit_robust).
 
 use super::heading_check::check_headings;
-use super::normal_equations::{Matrix, Vector, check_number, covariance, identifiable, invert};
+use super::normal_equations::{
+    Matrix, Vector, as_mounted, check_number, covariance, find_turn, identifiable, invert,
+};
 use super::robust::{check_field, is_usable};
 use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
@@ -27,9 +29,9 @@ const ROUNDING: f64 = 1e-12;
 
 /// Fits the exact deviation to observations by least squares in angle.
 ///
-/// The unknowns are the seven ratios. The constant is held at zero: no set of headings
-/// separates it from A = (χ21 − χ12)/2 (docs/science.md, §3), so that χ12 and χ21 take it
-/// up with no loss to the deviation.
+/// The unknowns are the seven ratios. The constant is held at zero, or at the angle by which
+/// the compass is mounted turned: no set of headings separates it from A = (χ21 − χ12)/2
+/// (docs/science.md, §3), so that χ12 and χ21 take up the rest with no loss to the deviation.
 ///
 /// An observation's weight divides the variance of its noise. Observations of weight zero,
 /// and those in a field too weak for a compass, are left out and counted as rejected.
@@ -46,11 +48,15 @@ pub fn fit_ols(observations: &[Observation]) -> Result<Model, FitError> {
     check_number(found)?;
     check_headings(&rows)?;
     let weights: f64 = rows.iter().map(|o| o.weight).sum();
+    let turn = find_turn(&rows);
+    if let Some(turn) = turn {
+        rows = turn.straighten(&rows);
+    }
 
     let (parameters, at) = settle(&rows, weights)?;
     let freedom = (rows.len() - PARAMETERS) as f64;
     let covariance = covariance(&invert(&at.normal)?, at.squares / freedom);
-    Ok(Model {
+    let straight = Model {
         parameters_over_lambda: parameters,
         constant_deg: 0.0,
         covariance: Some(covariance),
@@ -59,7 +65,8 @@ pub fn fit_ols(observations: &[Observation]) -> Result<Model, FitError> {
         samples_used: found,
         samples_rejected: observations.len() as u64 - found,
         quality: None,
-    })
+    };
+    Ok(as_mounted(straight, turn))
 }
 
 /// Normal equations for some parameters.

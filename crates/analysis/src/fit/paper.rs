@@ -6,7 +6,9 @@
 //! product's own fit is [`fit_robust`](super::fit_robust).
 
 use super::heading_check::check_headings;
-use super::normal_equations::{Matrix, Vector, check_number, covariance, identifiable, invert};
+use super::normal_equations::{
+    Matrix, Vector, as_mounted, check_number, covariance, find_turn, identifiable, invert,
+};
 use super::robust::{check_field, is_usable};
 use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
@@ -15,7 +17,8 @@ use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::result::FitError;
 use binnacle_compass::ship::{EarthField, PARAMETERS};
 
-/// Fits eq. 11 by least squares. The model has no constant. Observations of weight zero,
+/// Fits eq. 11 by least squares. The model has no constant but the angle by which the
+/// compass is mounted turned. Observations of weight zero,
 /// and those in a field too weak for a compass, are left out and counted as rejected; all
 /// others count alike.
 ///
@@ -29,6 +32,10 @@ pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
     let found = rows.len() as u64;
     check_number(found)?;
     check_headings(&rows)?;
+    let turn = find_turn(&rows);
+    if let Some(turn) = turn {
+        rows = turn.straighten(&rows);
+    }
     let mut normal = Matrix::zeros();
     let mut right = Vector::zeros();
     let mut squares = 0.0;
@@ -45,7 +52,7 @@ pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
 
     let parameters = Parameters::from_array(solution.into());
     let covariance = covariance(&inverse, variance);
-    Ok(Model {
+    let straight = Model {
         parameters_over_lambda: parameters,
         constant_deg: 0.0,
         covariance: Some(covariance),
@@ -54,7 +61,8 @@ pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
         samples_used: found,
         samples_rejected: observations.len() as u64 - found,
         quality: None,
-    })
+    };
+    Ok(as_mounted(straight, turn))
 }
 
 /// Returns eq. 11's row for M/λ and its right side H sin δ, nT.

@@ -15,13 +15,21 @@ use binnacle_compass::result::{FitError, NoiseLevels};
 /// times the worst.
 const ALLOWED_DEG: f64 = 3.0;
 const ALLOWED_NOISE_DEG: f64 = 1.25;
+/// Residual about zero beyond which the model is of no use: a compass that deviates by more
+/// must be adjusted (AMSA, Marshall Islands, Panama), and a corrected one would deviate so.
+const UNUSABLE_DEG: f64 = 5.0;
+/// Share of the samples below which those with weight are a minority: beyond one half no
+/// robust fit can say which part is wrong (breakdown point).
+const LEAST_USED_SHARE: f64 = 0.5;
 /// Residual and noise from which the result needs a caution.
 const CAUTION_DEG: f64 = 1.0;
 
-/// Fails for implausible residuals, and returns a caution for large ones.
+/// Fails for implausible residuals, where most samples have no weight, and where the model
+/// does not explain its own samples. Returns a caution for large residuals.
 pub(super) fn check_residuals(
     residuals_deg: impl Iterator<Item = f64>,
     levels: &NoiseLevels,
+    samples_used: u64,
 ) -> Result<Option<Caution>, FitError> {
     let residuals: Vec<f64> = residuals_deg.collect();
     let about = |centre| robust_sd(residuals.iter().copied(), centre);
@@ -38,7 +46,63 @@ pub(super) fn check_residuals(
             allowed_deg: ALLOWED_DEG,
         });
     }
+    check_used(samples_used, residuals.len() as u64)?;
+    if residual_deg > UNUSABLE_DEG {
+        return Err(FitError::ModelDoesNotExplain {
+            residual_deg,
+            allowed_deg: UNUSABLE_DEG,
+        });
+    }
     let is_large =
         residual_deg > ALLOWED_DEG || (residual_deg > CAUTION_DEG && noise_deg > CAUTION_DEG);
     Ok(is_large.then_some(Caution::LargeResiduals { residual_deg }))
+}
+
+/// Fails where most of the samples have no weight in the fit.
+fn check_used(used: u64, found: u64) -> Result<(), FitError> {
+    if used as f64 >= LEAST_USED_SHARE * found as f64 {
+        return Ok(());
+    }
+    Err(FitError::FewSamplesUsed { used, found })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Residuals evenly spread about a middle.
+    fn check(middle_deg: f64, half_width_deg: f64, used: u64) -> Result<Option<Caution>, FitError> {
+        let place = |row: i32| f64::from(row) / 50.0 - 1.0;
+        let residuals = (0..=100).map(|row| middle_deg + half_width_deg * place(row));
+        check_residuals(residuals, &NoiseLevels::TYPICAL, used)
+    }
+
+    #[test]
+    fn a_model_of_a_minority_of_the_samples_is_refused() {
+        let refused = check(0.0, 1.0, 50);
+        assert_eq!(
+            refused,
+            Err(FitError::FewSamplesUsed {
+                used: 50,
+                found: 101
+            })
+        );
+        assert_eq!(check(0.0, 1.0, 51), Ok(None));
+    }
+
+    #[test]
+    fn a_model_that_misses_its_own_samples_by_more_than_a_compass_may_deviate_is_refused() {
+        let refused = check(6.0, 1.0, 101);
+        let is_named = matches!(
+            refused,
+            Err(FitError::ModelDoesNotExplain { residual_deg, .. }) if residual_deg > 5.0
+        );
+        assert!(is_named, "{refused:?}");
+        // A reference that was wrong for days moves the constant.
+        let beside = check(2.5, 1.0, 101);
+        assert!(
+            matches!(beside, Ok(Some(Caution::LargeResiduals { .. }))),
+            "{beside:?}"
+        );
+    }
 }

@@ -3,7 +3,7 @@
 
 use super::heading_check::check_headings;
 use super::{residual_check, time_outliers};
-use crate::estimate::{Options, Prior, RoughEstimate, estimate, estimate_roughly};
+use crate::estimate::{Options, Prior, RoughEstimate, Turn, estimate, estimate_roughly};
 use crate::observation::Observation;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Model, Parameters};
@@ -77,7 +77,8 @@ pub fn fit_robust(
     check_field(observations)?;
     check_number(&rows, NEEDED_SAMPLES)?;
     check_headings(&rows)?;
-    fit_usable(observations, &usable, &rows, options)
+    let turn = Turn::find(&rows, &options.prior);
+    fit_usable(observations, &usable, &rows, options, turn)
 }
 
 /// Fits a model of a vessel of which much is known, so that few observations on few
@@ -93,7 +94,7 @@ pub fn fit_known_ship(
     let rows = chosen(observations, &usable);
     check_field(observations)?;
     check_number(&rows, NEEDED_SAMPLES_KNOWN_VESSEL)?;
-    fit_usable(observations, &usable, &rows, options)
+    fit_usable(observations, &usable, &rows, options, None)
 }
 
 /// Returns the noise levels, and roughly the parameters, where [`fit_robust`] would fit a
@@ -139,17 +140,22 @@ fn fit_usable(
     usable: &[usize],
     rows: &[Observation],
     options: &RobustOptions,
+    turn: Option<Turn>,
 ) -> Result<RobustFit, FitError> {
     let fitted = estimate(
         rows,
         &Options {
             prior: &options.prior,
             reference_constant_sd_deg: options.reference_constant_sd_deg,
+            turn,
         },
     )
     .ok_or(FitError::NotConverged)?;
+    let used = fitted.rows.iter().filter(|r| r.weight >= REJECTED_BELOW);
+    let squares: f64 = used.clone().map(|r| r.residual_deg.powi(2)).sum();
+    let samples_used = used.count() as u64;
     let residuals = fitted.rows.iter().map(|row| row.residual_deg);
-    let caution = residual_check::check_residuals(residuals, &fitted.levels)?;
+    let caution = residual_check::check_residuals(residuals, &fitted.levels, samples_used)?;
     check_needle(&fitted.parameters, rows)?;
     let mut quality = fitted.quality;
     quality.cautions.extend(caution);
@@ -168,9 +174,6 @@ fn fit_usable(
             weight: row.weight,
         };
     }
-    let used = fitted.rows.iter().filter(|r| r.weight >= REJECTED_BELOW);
-    let squares: f64 = used.clone().map(|r| r.residual_deg.powi(2)).sum();
-    let samples_used = used.count() as u64;
     let model = Model {
         parameters_over_lambda: fitted.parameters,
         constant_deg: fitted.constant_deg,

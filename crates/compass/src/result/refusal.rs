@@ -95,6 +95,46 @@ pub enum FitError {
         /// Number of readings with a stuck reference.
         readings: u64,
     },
+    /// The reference is made from the compass's own reading: it agrees with the compass however
+    /// wrong that is.
+    #[error(
+        "the reference heading is the compass's own: their difference scatters by \
+         {scatter_deg:.2} degrees about a smooth curve in {samples} samples, where independent \
+         instruments with these digits leave at least {least_deg:.2}; check which source is \
+         configured as the reference"
+    )]
+    ReferenceIsCompass {
+        /// Number of samples with the reference.
+        samples: u64,
+        /// Scatter of reference less compass about a smooth curve, degrees.
+        scatter_deg: f64,
+        /// Least scatter of independent instruments with the same digits, degrees.
+        least_deg: f64,
+    },
+    /// The fit gave no weight to most of the samples, so that the model is that of a minority.
+    #[error(
+        "only {used} of {found} samples agree with any one ship: the others contradict them; \
+         check whether the compass was moved or the reference was wrong, and fit the times \
+         before and after by themselves"
+    )]
+    FewSamplesUsed {
+        /// Number of samples with weight in the fit.
+        used: u64,
+        /// Number of samples with a reference.
+        found: u64,
+    },
+    /// The model predicts its own samples worse than a compass may deviate.
+    #[error(
+        "the model leaves residuals of {residual_deg:.1} degrees in its own samples, more than \
+         the {allowed_deg:.0} that a compass may deviate: it does not explain them; check \
+         whether the compass, its correctors or the reference were changed in between"
+    )]
+    ModelDoesNotExplain {
+        /// Robust standard deviation of the residuals about zero, degrees.
+        residual_deg: f64,
+        /// Greatest allowed value, degrees.
+        allowed_deg: f64,
+    },
     /// The residuals of the best fit exceed any instrument error: a variation of the wrong
     /// sign, exchanged columns, or a stuck reference.
     #[error(

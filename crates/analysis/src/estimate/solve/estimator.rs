@@ -1,6 +1,7 @@
 //! Estimator: a robust start, noise levels from the data, and Gauss–Newton on whitened
 //! rows.
 
+use super::alignment::Turn;
 use super::least_squares::{Matrix, Problem, Solution};
 use super::quality::{Evidence, quality};
 use super::start::start;
@@ -28,6 +29,8 @@ pub(crate) struct Options<'a> {
     pub(crate) prior: &'a Prior,
     /// Standard deviation of the reference's constant error, degrees.
     pub(crate) reference_constant_sd_deg: f64,
+    /// Rotation of the compass against the prior; none where it is mounted straight.
+    pub(crate) turn: Option<Turn>,
 }
 
 /// Estimate of a vessel's magnetism.
@@ -67,8 +70,16 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
         observations: sorted,
         order,
     } = Sorted::new(observations);
-    let problem = Problem::new(&sorted, options.prior)?;
-    let level_sample = level_sample(&sorted);
+    let straight: Cow<'_, [Observation]> = match options.turn {
+        Some(turn) => Cow::Owned(turn.straighten(&sorted)),
+        None => Cow::Borrowed(&*sorted),
+    };
+    let prior = match options.turn {
+        Some(_) => Cow::Owned(Turn::prior(options.prior)),
+        None => Cow::Borrowed(options.prior),
+    };
+    let problem = Problem::new(&straight, &prior)?;
+    let level_sample = level_sample(&straight);
     let (solution, levels) = match &level_sample {
         Some(level_sample) => seek(
             &problem.by(level_sample),
@@ -81,7 +92,13 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
             SearchEffort::Converged,
         )?,
     };
-    let (solution, evaluated) = problem.settle(solution, &levels, SETTLED)?;
+    let (solution, mut evaluated) = problem.settle(solution, &levels, SETTLED)?;
+    let mut before = solution.prior_covariance()?;
+    if let Some(turn) = options.turn {
+        evaluated.turn(turn)?;
+        let matrix = turn.matrix(&scales());
+        before = matrix * before * matrix.transpose();
+    }
 
     let (parameters, constant_deg) = to_physical_units(&evaluated.at_last_row);
     let mut covariance = covariance_in_physical_units(&evaluated.covariance);
@@ -119,7 +136,7 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
         weighed,
         row_variance: (squares / weighed).max(levels.row_variance()),
         after: &evaluated.covariance,
-        before: &solution.prior_covariance()?,
+        before: &before,
         parameters: &parameters,
         earth: EarthField {
             h_nt: last.h_nt,
@@ -216,7 +233,7 @@ struct SearchStart {
 }
 
 fn search_start(problem: &Problem<'_>, before: Option<&NoiseLevels>) -> SearchStart {
-    let (unknowns, sd) = start(
+    let begun = start(
         problem.observations,
         &problem.frames,
         &problem.prior_mean.into(),
@@ -228,12 +245,12 @@ fn search_start(problem: &Problem<'_>, before: Option<&NoiseLevels>) -> SearchSt
         NoiseLevels::MEMORYLESS
     };
     let by_start = NoiseLevels {
-        white_deg: (NEW_SHARE * sd).clamp(0.02, 10.0),
+        white_deg: (NEW_SHARE * begun.sd_deg).clamp(0.02, 10.0),
         ..typical
     };
     SearchStart {
         solution: Solution {
-            unknowns,
+            unknowns: begun.unknowns,
             reference_share: USUAL_REFERENCE_SHARE,
             prior_information: problem.prior_information,
         },

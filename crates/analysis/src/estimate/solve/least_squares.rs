@@ -3,6 +3,7 @@
 //! Once a solution has settled, the next step would be smaller than the limit. The pass
 //! that showed it is the one evaluated.
 
+use super::alignment::Turn;
 use super::quality::with_wide_population;
 use crate::estimate::prior::{Prior, scales, tail_factors};
 use crate::estimate::products::Products;
@@ -273,6 +274,29 @@ impl Solution {
             at_last_row[i] += drift.nt[a] / scale[i];
         }
         at_last_row
+    }
+}
+
+impl EvaluatedSolution {
+    /// Takes the solution of a straightened compass to that of the compass as mounted; none
+    /// where a matrix is singular.
+    pub(crate) fn turn(&mut self, turn: Turn) -> Option<()> {
+        let scale = scales();
+        let mut there = Matrix::identity();
+        there
+            .fixed_view_mut::<8, 8>(0, 0)
+            .copy_from(&turn.matrix(&scale));
+        let back = there.try_inverse()?;
+        self.at_last_row = (there * Vector::from(self.at_last_row)).into();
+        let constant_deg = self.at_last_row[CONSTANT] * scale[CONSTANT];
+        self.at_last_row[CONSTANT] = turn.constant_deg(constant_deg) / scale[CONSTANT];
+        let covariance = |of: &Matrix| there * of * there.transpose();
+        let information = |of: &Matrix| back.transpose() * of * back;
+        self.covariance = covariance(&self.covariance);
+        self.by_data = self.by_data.as_ref().map(covariance);
+        self.information = information(&self.information);
+        self.independent = information(&self.independent);
+        Some(())
     }
 }
 

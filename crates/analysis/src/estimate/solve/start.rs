@@ -21,16 +21,25 @@ const HUBER: f64 = 2.5;
 /// zero.
 const LEAST_SD_DEG: f64 = 0.02;
 
-/// Returns the unknowns of an iteratively reweighted fit, and the residuals' robust
-/// standard deviation in degrees.
+/// Robust first fit.
+pub(crate) struct RobustStart {
+    pub(crate) unknowns: Unknowns,
+    /// Robust standard deviation of the residuals, degrees.
+    pub(crate) sd_deg: f64,
+    /// Information of rows, taken as independent, and prior.
+    pub(crate) information: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+}
+
+/// Returns an iteratively reweighted fit.
 pub(crate) fn start(
     observations: &[Observation],
     frames: &[RowFrame],
     prior_mean: &Unknowns,
     prior_information: &SMatrix<f64, UNKNOWNS, UNKNOWNS>,
-) -> (Unknowns, f64) {
+) -> RobustStart {
     let mut unknowns = *prior_mean;
     let mut sd = f64::INFINITY;
+    let mut shown = *prior_information;
     // Every n-th row is as good a start as all of them.
     let every = observations.len().div_ceil(ENOUGH).max(1);
     let frames: Vec<&RowFrame> = frames.iter().step_by(every).collect();
@@ -53,8 +62,8 @@ pub(crate) fn start(
             information.add(&r.columns, weight);
             score += SVector::from(r.columns) * (r.residual * weight);
         }
-        let information = information.to_matrix() + prior_information;
-        let Some(factor) = information.cholesky() else {
+        shown = information.to_matrix() + prior_information;
+        let Some(factor) = shown.cholesky() else {
             break;
         };
         let step = factor.solve(&score);
@@ -65,7 +74,11 @@ pub(crate) fn start(
             break;
         }
     }
-    (unknowns, sd)
+    RobustStart {
+        unknowns,
+        sd_deg: sd,
+        information: shown,
+    }
 }
 
 /// Returns 1 up to [`HUBER`] standard deviations, and a weight falling as 1/|z| beyond.

@@ -1,0 +1,116 @@
+//! Reference headings that are the compass's own: a true heading made from the magnetic one
+//! by adding the variation, or the compass's reading under another name.
+//!
+//! Such a reference agrees with the compass however wrong the compass is, so that a fit finds
+//! no deviation, and a narrow band. A small deviation is no proof of it: a well adjusted
+//! compass has one, too. What gives it away is shared noise. Card, sensor and gyro err each by
+//! itself, and each reading is rounded by itself, so that the difference of independent
+//! instruments scatters about any smooth curve of deviation. A copy's difference scatters by
+//! no more than its digits. The two explanations are compared by their likelihoods.
+
+mod curve;
+mod digits;
+mod likelihood;
+mod pair;
+
+use binnacle_compass::result::FitError;
+use curve::residuals;
+use digits::digits_deg;
+use likelihood::{Digits, Evidence, weigh};
+pub use pair::HeadingPair;
+use std::collections::BTreeSet;
+
+use super::reference::HeadingReading;
+
+/// Least number of pairs on different readings: several for each unknown of the curve.
+const NEEDED_PAIRS: usize = 40;
+/// Greatest number of pairs that are weighed.
+const ENOUGH_PAIRS: usize = 2000;
+/// Least turn of the compass between pairs, degrees: on one heading even independent
+/// instruments may show the same digits for hours.
+const LEAST_TURN_DEG: f64 = 0.05;
+/// Width of the sectors of heading whose pairs count as one observation, degrees: rows on one
+/// heading share their slow errors and their rounding.
+const SECTOR_DEG: f64 = 1.0;
+/// Log-likelihood ratio from which the noise is shared: ln 10⁴. By chance a likelihood ratio
+/// exceeds k with a probability of 1/k at most, so that of ten thousand ships with independent
+/// instruments one is refused.
+const THRESHOLD: f64 = 9.2;
+
+/// Checks that no reference of these readings shares its noise with the compass.
+///
+/// # Errors
+/// [`FitError::ReferenceIsCompass`].
+pub fn check_readings_independence(readings: &[HeadingReading]) -> Result<(), FitError> {
+    type Source = fn(&HeadingReading) -> Option<binnacle_compass::angle::TrueHeading>;
+    let sources: [Source; 3] = [|r| r.gyro, |r| r.satellite, |r| r.unnamed];
+    for source in sources {
+        let pairs = readings
+            .iter()
+            .filter_map(|reading| Some(HeadingPair::of_reading(reading, source(reading)?)));
+        check_independence(&pairs.collect::<Vec<_>>())?;
+    }
+    Ok(())
+}
+
+/// Checks that a reference has its own noise, by pairs of compass and reference in any order.
+/// Few pairs, or pairs on few headings, show nothing and pass.
+///
+/// # Errors
+/// [`FitError::ReferenceIsCompass`].
+pub fn check_independence(pairs: &[HeadingPair]) -> Result<(), FitError> {
+    let mut sorted = pairs.to_vec();
+    sorted.sort_by(|a, b| (a.time.cmp(&b.time)).then(a.compass_deg().total_cmp(&b.compass_deg())));
+    let digits_of = |reading: fn(&HeadingPair) -> f64| {
+        let readings: Vec<f64> = sorted.iter().map(reading).collect();
+        digits_deg(&readings)
+    };
+    let digits = Digits {
+        compass_deg: digits_of(HeadingPair::compass_deg),
+        // A correction of the speed error hides them.
+        reference_deg: digits_of(HeadingPair::reference_deg)
+            .max(digits_of(HeadingPair::raw_reference_deg)),
+    };
+    let chosen = turned_pairs(&sorted, digits.compass_deg.max(LEAST_TURN_DEG));
+    if chosen.len() < NEEDED_PAIRS {
+        return Ok(());
+    }
+    let Some(residuals) = residuals(&sorted, &chosen) else {
+        return Ok(());
+    };
+    let sectors: BTreeSet<i64> = chosen
+        .iter()
+        .map(|&i| (sorted[i].compass_deg() / SECTOR_DEG) as i64)
+        .collect();
+    let Evidence {
+        log_ratio_per_pair,
+        scatter_deg,
+    } = weigh(&residuals, digits);
+    if log_ratio_per_pair * sectors.len() as f64 <= THRESHOLD {
+        return Ok(());
+    }
+    Err(FitError::ReferenceIsCompass {
+        samples: pairs.len() as u64,
+        scatter_deg,
+        least_deg: likelihood::least_scatter_deg(digits),
+    })
+}
+
+/// Returns the places of enough pairs between which the compass turned.
+fn turned_pairs(sorted: &[HeadingPair], turn_deg: f64) -> Vec<usize> {
+    let mut last: Option<f64> = None;
+    let mut turned = Vec::new();
+    for (place, pair) in sorted.iter().enumerate() {
+        let compass = pair.compass_deg();
+        // Half a digit allows for the rounding of the digits themselves.
+        let has_turned = last.is_none_or(|last| {
+            binnacle_compass::angle::wrap_180(compass - last).abs() > turn_deg / 2.0
+        });
+        if has_turned {
+            turned.push(place);
+            last = Some(compass);
+        }
+    }
+    let every = turned.len().div_ceil(ENOUGH_PAIRS).max(1);
+    turned.into_iter().step_by(every).collect()
+}
