@@ -2,7 +2,7 @@
 
 use super::scalar::Scalar;
 use super::states::{STATES, dot};
-use super::transition::{Pair, Transition};
+use super::transition::{Gain, Pair, Transition};
 use binnacle_analysis::estimate::{robust_loss, weight};
 
 /// Mean and covariance of the states, and the log likelihood of what was read.
@@ -63,8 +63,23 @@ impl Filter {
         if let Some(anomaly) = &t.anomaly {
             self.turn(anomaly);
         }
+        for gain in t.gains.iter().flatten() {
+            self.gain(gain);
+        }
         for (i, variance) in t.added.iter().enumerate() {
             self.covariance[i][i] += variance;
+        }
+    }
+
+    /// Lets a state gain a share of another.
+    fn gain(&mut self, gain: &Gain) {
+        let Gain { of, by, share } = *gain;
+        self.mean[by] += share * self.mean[of];
+        for row in self.covariance.iter_mut() {
+            row[by] += share * row[of];
+        }
+        for j in 0..STATES {
+            self.covariance[by][j] += share * self.covariance[of][j];
         }
     }
 

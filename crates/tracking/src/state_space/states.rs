@@ -8,7 +8,7 @@ use binnacle_compass::model::Parameters;
 use binnacle_compass::ship::PARAMETERS;
 
 /// Number of states.
-pub(crate) const STATES: usize = 30;
+pub(crate) const STATES: usize = 32;
 
 /// Fore-and-aft permanent field; the other six parameters follow in the order of
 /// [`Parameters`].
@@ -51,6 +51,9 @@ pub(crate) const REFLECTION: usize = 26;
 pub(crate) const LAG: usize = 27;
 /// Local anomaly of the variation and its rate an hour, degrees.
 pub(crate) const ANOMALY: usize = 28;
+
+/// Growth of the permanent field fore and aft a day; athwartships follows.
+pub(crate) const GROWTH: usize = 30;
 
 /// Memories of retained magnetism, seconds (DOMAIN: hours to days).
 pub(crate) const RETENTION_S: [f64; 2] = [4.0 * 3600.0, 16.0 * 3600.0];

@@ -3,8 +3,8 @@
 use super::levels::{Level, Levels};
 use super::row::Row;
 use super::states::{
-    ANOMALY, BX, BY, FRICTION, GYRO, GYRO_SLOW, LIST, LIST_NT, REFLECTION, SATELLITE, SCHULER,
-    SETTLING, STATES, SWING, VARIATION,
+    ANOMALY, BX, BY, FRICTION, GROWTH, GYRO, GYRO_SLOW, LIST, LIST_NT, REFLECTION, SATELLITE,
+    SCHULER, SETTLING, STATES, SWING, VARIATION,
 };
 use binnacle_analysis::estimate::{
     COMPASS_SWING_S, POPULATION_SD, SATELLITE_S, SLOW_GYRO_S, VARIATION_NM, swing_over,
@@ -46,6 +46,16 @@ pub(crate) struct Transition {
     pub(crate) schuler: Pair,
     /// An anomaly with its rate, while one is passed.
     pub(crate) anomaly: Option<Pair>,
+    /// Shares of states that other states gain.
+    pub(crate) gains: [Option<Gain>; 2],
+}
+
+/// Share of one state that another gains.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gain {
+    pub(crate) of: usize,
+    pub(crate) by: usize,
+    pub(crate) share: f64,
 }
 
 /// Transition of a state and its rate, which follows it.
@@ -68,6 +78,7 @@ impl Transition {
                 levels.at(Level::Schuler),
             ),
             anomaly: None,
+            gains: [None; 2],
         };
         let seconds = row.seconds;
         let turned = row.turned_deg.abs();
@@ -138,6 +149,17 @@ impl Transition {
     pub(crate) fn disturb(&mut self, seconds: f64, memory_s: f64, sd_deg: f64) {
         self.added[VARIATION] = 0.0;
         self.fade(VARIATION, seconds / memory_s, sd_deg);
+    }
+
+    /// Lets (bx, by) grow steadily for some days.
+    pub(crate) fn grow(&mut self, days: f64) {
+        self.gains = [(GROWTH, BX), (GROWTH + 1, BY)].map(|(of, by)| {
+            Some(Gain {
+                of,
+                by,
+                share: days,
+            })
+        });
     }
 
     /// Adds a random drift of (bx, by), nT squared, with a little of the induced parameters.
