@@ -10,7 +10,7 @@ mod cargo_entries;
 mod changes;
 mod epoch;
 mod epoch_builder;
-mod logbook_rules;
+pub mod logbook_rules;
 mod mixture;
 pub mod reading;
 mod single_heading;
