@@ -7,8 +7,8 @@ use binnacle_compass::result::{Cause, CauseProbability, Change};
 /// Returns the change that a detected event is.
 pub(crate) fn change(detected: &Detected) -> Change {
     let mut causes: Vec<CauseProbability> = Vec::new();
-    let total: f64 = detected.kinds.iter().map(|(_, p)| p).sum();
-    for (kind, probability) in &detected.kinds {
+    let total: f64 = detected.posterior.kinds.iter().map(|(_, p)| p).sum();
+    for (kind, probability) in &detected.posterior.kinds {
         let cause = cause(*kind, detected.event.in_port);
         let probability = probability / total.max(f64::MIN_POSITIVE);
         match causes.iter_mut().find(|known| known.cause == cause) {
@@ -19,8 +19,9 @@ pub(crate) fn change(detected: &Detected) -> Change {
     causes.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     Change {
         from: detected.event.from,
-        from_earliest: detected.earliest.min(detected.event.from),
+        from_earliest: detected.posterior.earliest.min(detected.event.from),
         from_latest: detected
+            .posterior
             .latest
             .max(detected.event.from)
             .plus_seconds(3600.0),
