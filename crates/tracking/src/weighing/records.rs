@@ -38,7 +38,7 @@ pub(crate) enum Class {
 
 impl Class {
     /// Returns the subject of a kind of event.
-    pub(super) fn of(kind: Kind) -> Class {
+    pub(crate) fn of(kind: Kind) -> Class {
         match kind {
             Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift => Class::Ship,
             Kind::Storm | Kind::Anomaly => Class::Passing,
