@@ -14,7 +14,7 @@ pub mod logbook_rules;
 mod mixture;
 pub mod reading;
 mod single_heading;
-mod stuck_compass;
+pub mod stuck_compass;
 
 use berth_stays::{add_berth_changes, mark_alongside};
 use binnacle_compass::coverage::coverage;
