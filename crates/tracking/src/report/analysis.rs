@@ -8,12 +8,14 @@ use super::epochs::{Boundaries, Fitting, fit_epochs, spans};
 use super::faults::Faults;
 use super::input::Input;
 use super::notices::notices;
+use super::overlaps::merge_overlapping;
 use super::references::References;
 use super::row_times::RowTimes;
 use super::voyage::read_voyage;
 use crate::state_space::levels::{Level, Levels};
 use binnacle_analysis::analyse::berth_stays::{add_berth_changes, mark_alongside};
 use binnacle_analysis::analyse::reading::{Reading, readings};
+use binnacle_analysis::analyse::stuck_compass::mark_stuck;
 use binnacle_compass::coverage::{Coverage, coverage};
 use binnacle_compass::result::{Analysis, NoiseLevels};
 
@@ -24,19 +26,21 @@ const ESTIMATOR: &str = "hypotheses-1";
 pub fn analyse(input: &Input<'_>) -> Analysis {
     let logbook = input.logbook;
     let mut readings = readings(input.samples, logbook, &input.settings);
+    let stuck = mark_stuck(&mut readings);
     let stays = mark_alongside(&mut readings);
     let voyage = read_voyage(input, &readings);
     let tracker = &voyage.tracker;
-    let (detected, suspected) = (&tracker.detected, tracker.suspected());
+    let detected = merge_overlapping(&tracker.detected);
+    let suspected = merge_overlapping(&tracker.suspected());
     let current = tracker.current_ship();
     let times = RowTimes::new(voyage.rows.iter().map(|row| row.time).collect(), logbook);
 
-    let faults = Faults::new(detected, &suspected, times.last());
+    let faults = Faults::new(&detected, &suspected, times.last());
     let constant_sd_deg = input.settings.reference_constant_sd_deg;
     let references = References::compare(&readings, &voyage.works, constant_sd_deg);
     record_faults(&mut readings, &references, &faults);
 
-    let boundaries = Boundaries::collect(&voyage.works, detected, &times, logbook);
+    let boundaries = Boundaries::collect(&voyage.works, &detected, &times, logbook);
     let spans = spans(&boundaries, current.as_ref(), &readings);
     include_laden(&spans, &mut readings);
     let contradicted = include_contradicted(&spans, &mut readings, logbook);
@@ -46,11 +50,12 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
         faults: &faults,
         prior: input.prior,
         noise: noise(tracker.levels()),
+        one_reference_sd_deg: constant_sd_deg,
     };
     let epochs = fit_epochs(&spans, &mut readings, &fitting);
 
     let mut changes = changes(&Findings {
-        detected,
+        detected: &detected,
         suspected: &suspected,
         works: &voyage.works,
         boundaries: &boundaries,
@@ -61,6 +66,7 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
         logbook,
         current: current.as_ref(),
     });
+    changes.extend(stuck);
     add_berth_changes(&stays, &readings, &epochs, &mut changes);
     changes.sort_by_key(|change| (change.from, change.detected_at));
     Analysis {

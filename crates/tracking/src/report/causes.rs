@@ -4,6 +4,7 @@
 //! A strike is lightning at sea and work in port, unless the logbook says otherwise. A passing
 //! disturbance of many degrees is rather a fault of the compass.
 
+use crate::hypotheses::hypothesis::Event;
 use crate::hypotheses::kinds::Kind;
 use crate::weighing::records::{Class, Detected};
 use binnacle_analysis::analyse::logbook_rules::reported_cause;
@@ -28,10 +29,16 @@ const COMPASS_FAULTS: f64 = 0.03;
 const LONE_REFERENCE_FAULTS: f64 = 0.06;
 /// Probability below which a cause is not named.
 const NEGLIGIBLE: f64 = 0.005;
-/// Tolerance of the logbook's times after an event, and of work and cargo before one, seconds:
-/// people write down when they noticed, or what was planned.
+/// Probability that a change of the whole ship in port is cargo and not work.
+const LOADED: f64 = 0.85;
+/// Tolerance of the logbook's times after an event, seconds: people write down when they
+/// noticed.
 const REPORTED_WITHIN_S: f64 = 2.0 * 86_400.0;
-const WORKED_BEFORE_S: f64 = 86_400.0;
+/// Tolerance of work before an event, seconds: at sea a clock's error, in port the delay of a
+/// plan.
+const WORKED_BEFORE_S: f64 = 6.0 * 3600.0;
+const PLANNED_S: f64 = 86_400.0;
+/// Tolerance of cargo after a change, seconds: a hasty entry.
 const LOADED_AFTER_S: f64 = 6.0 * 3600.0;
 
 /// Circumstances of an event that part its causes.
@@ -53,7 +60,7 @@ pub(super) fn causes(
     let mut weights: Vec<CauseProbability> = Vec::new();
     let posterior = &detected.posterior;
     for (kind, probability) in posterior.kinds.iter().chain(&posterior.instead) {
-        for (cause, share) in shares(*kind, detected.event.in_port, circumstances) {
+        for (cause, share) in shares(*kind, &detected.event, circumstances) {
             let factor = if reported.contains(&cause) {
                 REPORTED_FACTOR
             } else {
@@ -80,8 +87,8 @@ fn add(weights: &mut Vec<CauseProbability>, cause: Cause, probability: f64) {
 }
 
 /// Returns the causes of a kind of event, each with its share.
-fn shares(kind: Kind, in_port: bool, known: &Circumstances) -> Vec<(Cause, f64)> {
-    let struck = if in_port {
+fn shares(kind: Kind, event: &Event, known: &Circumstances) -> Vec<(Cause, f64)> {
+    let struck = if event.in_port {
         STRUCK_IN_PORT
     } else {
         STRUCK_AT_SEA
@@ -106,7 +113,12 @@ fn shares(kind: Kind, in_port: bool, known: &Circumstances) -> Vec<(Cause, f64)>
             (Cause::LightningOrShock, struck),
             (Cause::AdjustmentOrRepair, 1.0 - struck),
         ],
-        Kind::Cargo => vec![(Cause::MagneticCargo, 1.0)],
+        // Work is not undone at a port call.
+        Kind::Cargo if event.until.is_some() => vec![(Cause::MagneticCargo, 1.0)],
+        Kind::Cargo => vec![
+            (Cause::MagneticCargo, LOADED),
+            (Cause::AdjustmentOrRepair, 1.0 - LOADED),
+        ],
         Kind::Alignment => vec![(Cause::Alignment, 1.0)],
         Kind::ShipDrift => vec![(Cause::Drift, 1.0)],
         Kind::StuckCard => vec![(Cause::CompassFault, 1.0)],
@@ -171,7 +183,12 @@ pub(super) fn reported(detected: &Detected, logbook: &[LogbookEntry]) -> Vec<Cau
             };
             event.in_port && (is_then(entry.from) || is_then(to))
         } else if entry.kind.ends_an_epoch() {
-            near(entry.from, to, WORKED_BEFORE_S)
+            let before_s = if event.in_port {
+                PLANNED_S
+            } else {
+                WORKED_BEFORE_S
+            };
+            near(entry.from, to, before_s)
         } else {
             near(entry.from, to, REPORTED_WITHIN_S)
         }

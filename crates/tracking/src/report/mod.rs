@@ -9,6 +9,7 @@ mod epochs;
 mod faults;
 mod input;
 mod notices;
+mod overlaps;
 mod references;
 mod row_times;
 mod voyage;

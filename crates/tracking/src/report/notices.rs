@@ -17,8 +17,8 @@ const UNWATCHED: &str = "too little is known of the vessel so far to detect a ch
 /// event in one hour of a year, and the detection threshold.
 const DETECTED_SD: f64 = 5.0;
 /// Step of the permanent magnetism that a watched vessel shows, nT: one that moves the compass
-/// by more than ten degrees.
-const WATCHED_FOR_NT: f64 = 5000.0;
+/// by five degrees.
+const WATCHED_FOR_NT: f64 = 2000.0;
 /// Number of headings at which the uncertainty is evaluated.
 const HEADINGS: u32 = 24;
 

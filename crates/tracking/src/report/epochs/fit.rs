@@ -28,6 +28,8 @@ pub(crate) struct Fitting<'a> {
     pub(crate) faults: &'a Faults,
     pub(crate) prior: &'a ShipPrior,
     pub(crate) noise: NoiseLevels,
+    /// Standard deviation of one reference's constant error, degrees.
+    pub(crate) one_reference_sd_deg: f64,
 }
 
 /// Fits all epochs in order of time, and records the outcome in each reading.
@@ -159,9 +161,7 @@ impl Fitting<'_> {
             .iter()
             .filter_map(|row| readings[row.place].diagnostic.residual_deg);
         let caution = check_residuals(residuals, &self.noise)?;
-        let checked = self.references.at(span.own.start).as_ref();
-        let reference_sd_deg = checked.map_or(f64::INFINITY, |check| check.constant_sd_deg);
-        self.complete(&mut model, &observations, ship, reference_sd_deg, caution);
+        self.complete(&mut model, &observations, ship, caution);
         count(&mut model, &readings[span.own.clone()], &earlier, before);
         Ok(model)
     }
@@ -172,7 +172,6 @@ impl Fitting<'_> {
         model: &mut Model,
         observations: &[Observation],
         ship: &ShipState,
-        reference_sd_deg: f64,
         caution: Option<Caution>,
     ) {
         let (Some(last), Some(weakest_h_nt)) = (
@@ -191,13 +190,25 @@ impl Fitting<'_> {
             weakest_h_nt,
             samples: observations.len(),
             row_variance: self.noise.row_variance(),
-            reference_sd_deg,
+            reference_sd_deg: self.reference_sd_deg(observations),
         };
         let (mut quality, identifiable) = quality(model, &known);
         quality.cautions.extend(caution);
         quality.cautions.extend(long_gap(observations));
         model.quality = Some(quality);
         model.identifiable = Some(identifiable);
+    }
+
+    /// Returns the standard deviation of the constant error of one reference, or of the mean of
+    /// two.
+    fn reference_sd_deg(&self, observations: &[Observation]) -> f64 {
+        let has_both = |o: &Observation| o.gyro_less_satellite_deg.is_some();
+        let references: f64 = if observations.iter().any(has_both) {
+            2.0
+        } else {
+            1.0
+        };
+        self.one_reference_sd_deg / references.sqrt()
     }
 
     /// Marks every row that would have counted as one without a model.

@@ -3,10 +3,10 @@
 use crate::state_space::ship_state::ShipState;
 use binnacle_analysis::estimate::POPULATION_SD;
 use binnacle_analysis::fleet_prior::ShipPrior;
-use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::deviation::linearised_at_compass;
 use binnacle_compass::model::{Caution, FromData, Identifiable, Model, Quality};
 use binnacle_compass::ship::{CAUTION_H_NT, EarthField, PARAMETERS};
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 /// Factor on the population's standard deviations for the data's own knowledge.
 const WIDE_POPULATION_FACTOR: f64 = 10.0;
@@ -18,12 +18,13 @@ const MORE_SAMPLES_FACTOR: f64 = 10.0;
 const OPEN_RATIO: f64 = 1e12;
 /// Number of headings at which the curve is evaluated.
 const HEADINGS: u32 = 24;
-/// Number of coefficients of a curve of deviation: A, B, C, D and E.
-const COEFFICIENTS: f64 = 5.0;
+/// Number of coefficients of a curve of deviation about its mean: B, C, D and E.
+const COEFFICIENTS: f64 = 4.0;
 /// Standard deviation of a usual compass's alignment, degrees.
 const ALIGNMENT_DEG: f64 = 0.6;
 
 type Matrix = SMatrix<f64, PARAMETERS, PARAMETERS>;
+type Vector = SVector<f64, PARAMETERS>;
 
 /// Knowledge behind a model.
 pub(super) struct Knowledge<'a> {
@@ -159,25 +160,24 @@ fn condition(information: &Matrix) -> Option<f64> {
 }
 
 /// Returns the number of samples with independent errors, on headings all round, that would
-/// give the curve at the last place as well: each coefficient takes one.
+/// give the curve at the last place as well: each coefficient takes one. The curve's mean, A,
+/// is left out: headings alone cannot tell it from the constant.
 fn effective_samples(model: &Model, known: &Knowledge<'_>) -> f64 {
-    let mut covariance = known.ship.in_compass_axes().covariance;
-    // Headings alone cannot tell the constant.
-    for j in 0..=PARAMETERS {
-        covariance[j][PARAMETERS] = 0.0;
-        covariance[PARAMETERS][j] = 0.0;
-    }
-    let curve = Model {
-        covariance: Some(covariance),
-        ..model.clone()
-    };
-    let errors = (0..HEADINGS).filter_map(|k| {
-        let compass = CompassHeading::new(f64::from(k * 360 / HEADINGS))?;
-        curve
-            .deviation(compass, known.earth)
-            .ok()?
-            .standard_error_deg
+    let parameters = &model.parameters_over_lambda;
+    let slopes: Vec<Vector> = (0..HEADINGS)
+        .filter_map(|k| {
+            let compass_rad = f64::from(k * 360 / HEADINGS).to_radians();
+            let (_, slopes) = linearised_at_compass(parameters, compass_rad, known.earth).ok()?;
+            Some(Vector::from_fn(|j, _| slopes[j].to_degrees()))
+        })
+        .collect();
+    let mean = slopes.iter().sum::<Vector>() / slopes.len().max(1) as f64;
+    let covariance = known.ship.in_compass_axes().covariance;
+    let covariance = Matrix::from_fn(|i, j| covariance[i][j]);
+    let variances = slopes.iter().map(|slope| {
+        let slope = slope - mean;
+        slope.dot(&(covariance * slope))
     });
-    let variance = errors.map(|error| error * error).sum::<f64>() / f64::from(HEADINGS);
+    let variance = variances.sum::<f64>() / slopes.len().max(1) as f64;
     (COEFFICIENTS * known.row_variance / variance.max(1e-12)).min(known.samples as f64)
 }
