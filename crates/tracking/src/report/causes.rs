@@ -31,6 +31,8 @@ const LONE_REFERENCE_FAULTS: f64 = 0.06;
 const NEGLIGIBLE: f64 = 0.005;
 /// Probability that a change of the whole ship in port is cargo and not work.
 const LOADED: f64 = 0.85;
+/// Probability that a step in port that a later port call undid was cargo and not work.
+const DISCHARGED: f64 = 0.95;
 /// Tolerance of the logbook's times after an event, seconds: people write down when they
 /// noticed.
 const REPORTED_WITHIN_S: f64 = 2.0 * 86_400.0;
@@ -109,6 +111,10 @@ fn shares(kind: Kind, event: &Event, known: &Circumstances) -> Vec<(Cause, f64)>
         ]
     };
     match kind {
+        Kind::Strike if event.in_port && event.until.is_some() => vec![
+            (Cause::MagneticCargo, DISCHARGED),
+            (Cause::AdjustmentOrRepair, 1.0 - DISCHARGED),
+        ],
         Kind::Strike => vec![
             (Cause::LightningOrShock, struck),
             (Cause::AdjustmentOrRepair, 1.0 - struck),

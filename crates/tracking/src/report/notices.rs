@@ -4,10 +4,11 @@ use super::cargo_entries::{self, ContradictedEntry};
 use super::voyage::Voyage;
 use crate::state_space::ship_state::ShipState;
 use binnacle_analysis::analyse::reading::Reading;
+use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::model::Model;
 use binnacle_compass::result::Epoch;
-use binnacle_compass::ship::EarthField;
+use binnacle_compass::ship::{EarthField, PARAMETERS};
 
 /// Notice while a change would not be noticed.
 const UNWATCHED: &str = "too little is known of the vessel so far to detect a change of its \
@@ -61,10 +62,10 @@ fn smallest_step_nt(ship: &ShipState, earth: EarthField) -> f64 {
     let seen = ship.in_compass_axes();
     let mut covariance = seen.covariance;
     // The constant is the same before and after a step.
-    for j in 0..covariance.len() {
-        covariance[7][j] = 0.0;
-        covariance[j][7] = 0.0;
+    for row in &mut covariance {
+        row[PARAMETERS] = 0.0;
     }
+    covariance[PARAMETERS] = [0.0; PARAMETERS + 1];
     let model = Model {
         parameters_over_lambda: seen.parameters(),
         constant_deg: 0.0,
@@ -77,7 +78,7 @@ fn smallest_step_nt(ship: &ShipState, earth: EarthField) -> f64 {
     };
     let errors = (0..HEADINGS).map(|k| {
         let compass_deg = f64::from(k * 360 / HEADINGS);
-        let compass = binnacle_compass::angle::CompassHeading::new(compass_deg)?;
+        let compass = CompassHeading::new(compass_deg)?;
         model.deviation(compass, earth).ok()?.standard_error_deg
     });
     let mut errors: Vec<f64> = errors.map(|error| error.unwrap_or(f64::INFINITY)).collect();

@@ -18,6 +18,7 @@ const SMALLEST_DRIFT_DEG: f64 = 0.1;
 const MENTIONED_END: f64 = 0.02;
 
 /// Facts about a change beside its posterior.
+#[allow(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 #[derive(Clone, Debug, Default)]
 pub(super) struct Facts {
     /// Largest change of the deviation over headings, degrees.

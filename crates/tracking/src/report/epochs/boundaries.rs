@@ -61,14 +61,16 @@ impl<'a> Boundaries<'a> {
                 continue;
             }
             let at = times.date(detected.event.from);
-            let ship = &detected.event.ship_before;
-            if cause == Cause::AdjustmentOrRepair && boundaries.redate_work(at, ship) {
-                boundaries.logged.push(event);
-                continue;
+            if cause == Cause::AdjustmentOrRepair {
+                let latest = times.next(detected.event.from).unwrap_or(at);
+                if boundaries.redate_work(at, detected, latest) {
+                    boundaries.logged.push(event);
+                    continue;
+                }
             }
             let begin = Boundary {
                 at,
-                ship_before: Some(ship),
+                ship_before: Some(&detected.event.ship_before),
                 begun_by: None,
                 work: None,
                 event: Some(event),
@@ -92,10 +94,14 @@ impl<'a> Boundaries<'a> {
         boundaries
     }
 
-    /// Dates work of about a time by a change that the samples show. Returns false if the
-    /// logbook has none.
-    fn redate_work(&mut self, at: Timestamp, ship_before: &'a ShipState) -> bool {
-        let apart_s = |work: &Boundary<'_>| work.at.seconds_since(at).abs();
+    /// Dates work of about the time of a change by that change. Returns false if the logbook has
+    /// none.
+    fn redate_work(&mut self, at: Timestamp, detected: &'a Detected, latest: Timestamp) -> bool {
+        let earliest = detected.event.from;
+        let apart_s = |work: &Boundary<'_>| {
+            let before_s = earliest.seconds_since(work.at);
+            before_s.max(work.at.seconds_since(latest)).max(0.0)
+        };
         let works = self.list.iter_mut().filter(|b| b.work.is_some());
         let near = works.filter(|work| apart_s(work) < MISTIMED_S);
         let Some(work) = near.min_by(|a, b| apart_s(a).total_cmp(&apart_s(b))) else {
@@ -103,7 +109,7 @@ impl<'a> Boundaries<'a> {
         };
         if at < work.at {
             // Until the entry the filters did not know of the work.
-            work.ship_before = Some(ship_before);
+            work.ship_before = Some(&detected.event.ship_before);
         }
         work.at = at;
         true
