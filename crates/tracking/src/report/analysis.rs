@@ -33,7 +33,7 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
     let detected = merge_overlapping(&tracker.detected);
     let suspected = merge_overlapping(&tracker.suspected());
     let current = tracker.current_ship();
-    let times = RowTimes::new(voyage.rows.iter().map(|row| row.time).collect(), logbook);
+    let times = RowTimes::new(&voyage.rows, logbook);
 
     let faults = Faults::new(&detected, &suspected, times.last());
     let constant_sd_deg = input.settings.reference_constant_sd_deg;

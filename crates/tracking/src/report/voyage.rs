@@ -30,6 +30,8 @@ pub(super) struct TrackedRow {
     pub(super) time: Timestamp,
     /// Square of the innovation, standard deviations.
     pub(super) z_squared: f64,
+    /// True if the vessel was in port since the row before.
+    pub(super) after_port: bool,
 }
 
 /// Work on ship or compass by the logbook.
@@ -139,6 +141,7 @@ impl Voyage {
                 place,
                 time: reading.sample().time,
                 z_squared: tracked.read.deviation.z_squared(),
+                after_port: tracked.after_port,
             });
         }
     }

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 const DAY_S: f64 = 86_400.0;
 /// Time between rows, beyond that of sailing from one to the other, that counts as a port
 /// call, seconds. Where the speed is not known the ship sails at the usual one, knots.
-pub(crate) const PORT_GAP_S: f64 = 2.5 * 3600.0;
+const PORT_GAP_S: f64 = 2.5 * 3600.0;
 const USUAL_KN: f64 = 10.0;
 /// Readings before the step of an instrument is judged, share of them that lie on it, and the
 /// distance within which one does.

@@ -2,7 +2,7 @@
 
 use crate::voyages::fleet::{Event, Log, Name, sail_log};
 use crate::{HOUR_S, analyse_with, began, calm, entry, is_sound, of_the_ship, run};
-use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::result::{Analysis, Cause, Change, SampleReason};
@@ -75,28 +75,6 @@ fn a_compass_that_sticks_is_named_and_its_samples_are_left_out() {
             .iter()
             .all(|s| s.reason != Some(SampleReason::CompassStuck))
     );
-}
-
-#[test]
-fn a_fault_of_the_satellite_compass_is_named_whichever_way_it_errs() {
-    for (seed, off_deg) in [(31, 3.0), (32, -3.0), (33, 1.5), (34, -2.0)] {
-        let mut log = sail_log(seed, &calm(Event::Nothing));
-        let day = |time: Timestamp| time.seconds_since(log.start) / DAY_S;
-        for sample in &mut log.samples {
-            if (25.0..30.0).contains(&day(sample.time)) {
-                let turned = |heading: TrueHeading| TrueHeading::new(heading.degrees() + off_deg);
-                sample.satellite = sample.satellite.and_then(turned);
-            }
-        }
-        let analysis = run(&log.samples);
-        is_sound(&analysis);
-        let certain = analysis.changes.iter().filter(|c| c.confirmed);
-        let reported: Vec<Cause> = certain.map(|c| c.cause).collect();
-        assert!(!reported.is_empty(), "{off_deg}");
-        let is_fault = |cause: &Cause| *cause == Cause::ReferenceFault;
-        assert!(reported.iter().all(is_fault), "{off_deg}: {reported:?}");
-        assert_eq!(analysis.epochs.len(), 1, "{off_deg}");
-    }
 }
 
 #[test]
