@@ -4,7 +4,7 @@ use crate::voyages::fleet::{Event, Log, sail_log};
 use crate::voyages::{predicted, true_deviation};
 use crate::{HOUR_S, calm, is_sound, of_the_ship, run};
 use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
-use binnacle_compass::result::{Analysis, Cause, Change};
+use binnacle_compass::result::{Analysis, Cause, Change, SampleReason};
 use binnacle_compass::sample::Sample;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -190,4 +190,85 @@ fn a_vessel_on_one_course_has_a_notice_that_a_change_would_not_be_noticed() {
     };
     assert!(said(&one), "{} samples", one.len());
     assert!(!said(&log.samples));
+}
+
+#[test]
+fn wild_readings_of_a_gyro_make_no_stuck_compass() {
+    let mut plan = calm(Event::Nothing);
+    plan.faults.satellite = false;
+    let mut log = sail_log(63, &plan);
+    for sample in log.samples.iter_mut().step_by(9) {
+        sample.gyro = sample.gyro.map(|gyro| turned(gyro, 12.0));
+    }
+    let analysis = run(&log.samples);
+    let mut causes = analysis.changes.iter().map(|c| c.cause);
+    assert!(causes.all(|cause| cause != Cause::CompassFault));
+}
+
+#[test]
+fn a_jammed_card_that_trembles_is_a_stuck_compass() {
+    for (seed, trembles_deg) in [(61, 0.1), (62, 0.3), (64, 0.3)] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let first = log
+            .samples
+            .iter()
+            .position(|s| day(&log, s) > 25.0)
+            .unwrap();
+        let last = log
+            .samples
+            .iter()
+            .position(|s| day(&log, s) > 30.0)
+            .unwrap();
+        let jammed = log.samples[first].compass.degrees();
+        for sample in &mut log.samples[first..last] {
+            let off = trembles_deg * (2.0 * rng.random::<f64>() - 1.0);
+            sample.compass = CompassHeading::new(jammed + off).unwrap();
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let reported: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
+        assert_eq!(reported, [Cause::CompassFault], "seed {seed}");
+        let fault = certain(&analysis)[0];
+        let jammed_at = log.samples[first].time;
+        let late_h = fault.from.seconds_since(jammed_at) / HOUR_S;
+        assert!((-1.0..36.0).contains(&late_h), "seed {seed}: {late_h} h");
+        let is_stuck = |s: &binnacle_compass::result::SampleDiagnostic| {
+            s.reason == Some(SampleReason::CompassStuck)
+        };
+        let stuck = analysis.samples.iter().filter(|s| is_stuck(s)).count();
+        assert!(stuck > (last - first) / 2, "seed {seed}: {stuck}");
+        let before = analysis.samples[..first].iter().filter(|s| is_stuck(s));
+        assert!(before.count() < 3, "seed {seed}");
+    }
+}
+
+#[test]
+fn on_one_course_a_zero_that_moved_may_be_a_strike_and_the_band_holds_either() {
+    let (mut open, mut headings, mut held) = (0, 0, 0);
+    for seed in 60..66 {
+        let moved_deg = 12.0;
+        let (log, moved) = zero_moved(seed, moved_deg);
+        // State three hours later, and before.
+        let analysis = run(&log.samples[..moved + 18]);
+        let reported = certain(&analysis);
+        let zero = reported.iter().flat_map(|c| &c.causes);
+        let zero = zero.filter(|c| c.cause == Cause::Alignment);
+        if zero.map(|c| c.probability).sum::<f64>() > 0.05 {
+            open += 1;
+        }
+        let place = analysis.last_place.unwrap();
+        let epoch = analysis.current_epoch().unwrap();
+        for k in 0..36 {
+            let shown_deg = 10.0 * f64::from(k);
+            let (h, z) = (place.h_nt, place.z_nt);
+            let sound_deg = true_deviation(&log.truth, shown_deg - moved_deg, h, z);
+            let (predicted_deg, se_deg) = predicted(epoch.model.as_ref().unwrap(), shown_deg, h, z);
+            let off_deg = wrap_180(sound_deg - moved_deg - predicted_deg).abs();
+            headings += 1;
+            held += usize::from(off_deg < 1.96 * se_deg);
+        }
+    }
+    assert!(open >= 5, "{open}");
+    assert!(10 * held > 9 * headings, "{held} of {headings}");
 }

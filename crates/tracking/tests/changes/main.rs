@@ -7,6 +7,7 @@ mod cargo;
 mod causes;
 mod disturbances;
 mod faults;
+mod large_errors;
 mod strikes;
 #[allow(dead_code, unused_imports)]
 #[path = "../../../analysis/tests/voyages/mod.rs"]
@@ -340,29 +341,25 @@ fn a_thousand_port_calls_are_a_bounded_work() {
 
 #[test]
 fn a_possible_discharge_is_named_and_widens_the_band() {
-    let mut open = 0;
-    for seed in [43, 46, 49, 50, 51] {
-        let mut plan = calm(Event::Cargo);
-        plan.days = 90.0;
-        let log = sail_log(seed, &plan);
-        let cargo = log.happened.iter().find(|h| h.what == Name::Cargo).unwrap();
-        let discharged = cargo.to.unwrap();
-        let first = log.samples.iter().position(|s| s.time > discharged);
-        let first = first.unwrap();
-        let analysis = run(&log.samples[..first + 2]);
-        is_sound(&analysis);
-        let mut evidence = analysis.changes.iter().flat_map(|c| &c.evidence);
-        if !evidence.any(|line| line.contains("may have ended")) {
-            continue;
-        }
-        open += 1;
-        let laden = run(&log.samples[..first]);
-        let variance = |analysis: &Analysis| {
-            let model = analysis.current_epoch().unwrap().model.as_ref();
-            let covariance = model.unwrap().covariance.unwrap();
-            covariance[0][0] + covariance[2][2]
-        };
-        assert!(variance(&analysis) > variance(&laden), "seed {seed}");
-    }
-    assert!(open > 1, "{open}");
+    let mut plan = calm(Event::Cargo);
+    plan.days = 90.0;
+    let log = sail_log(40, &plan);
+    let cargo = log.happened.iter().find(|h| h.what == Name::Cargo).unwrap();
+    let discharged = cargo.to.unwrap();
+    let first = log.samples.iter().position(|s| s.time > discharged);
+    let first = first.unwrap();
+    let analysis = run(&log.samples[..first + 3]);
+    is_sound(&analysis);
+    let laden = run(&log.samples[..first]);
+    let open = analysis.changes.iter().flat_map(|c| &c.evidence);
+    assert!(
+        open.clone().any(|e| e.contains("may have ended")),
+        "{open:?}"
+    );
+    let variance = |analysis: &Analysis| {
+        let model = analysis.current_epoch().unwrap().model.as_ref();
+        let covariance = model.unwrap().covariance.unwrap();
+        covariance[0][0] + covariance[2][2]
+    };
+    assert!(variance(&analysis) > variance(&laden));
 }
