@@ -160,7 +160,9 @@ impl Fitting<'_> {
         let residuals = usable
             .iter()
             .filter_map(|row| readings[row.place].diagnostic.residual_deg);
-        let caution = check_residuals(residuals, &self.noise)?;
+        let used = usable.iter();
+        let used = used.filter(|row| readings[row.place].diagnostic.used);
+        let caution = check_residuals(residuals, &self.noise, used.count() as u64)?;
         self.complete(&mut model, &observations, ship, caution);
         count(&mut model, &readings[span.own.clone()], &earlier, before);
         Ok(model)
