@@ -10,11 +10,11 @@ mod cargo_entries;
 mod changes;
 mod epoch;
 mod epoch_builder;
-mod logbook_rules;
+pub mod logbook_rules;
 mod mixture;
 pub mod reading;
 mod single_heading;
-mod stuck_compass;
+pub mod stuck_compass;
 
 use berth_stays::{add_berth_changes, mark_alongside};
 use binnacle_compass::coverage::coverage;

@@ -26,7 +26,10 @@ const CAUTION_DEG: f64 = 1.0;
 
 /// Fails for implausible residuals, where most samples have no weight, and where the model
 /// does not explain its own samples. Returns a caution for large residuals.
-pub(super) fn check_residuals(
+///
+/// # Errors
+/// The refusal by name.
+pub fn check_residuals(
     residuals_deg: impl Iterator<Item = f64>,
     levels: &NoiseLevels,
     samples_used: u64,

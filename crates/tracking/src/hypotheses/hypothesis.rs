@@ -360,9 +360,8 @@ impl Hypothesis {
         let lasting = lasting.filter(|(_, event)| event.until.is_none());
         let ended = lasting.filter_map(|(i, event)| {
             let probability = match event.kind.row().ending {
-                Ending::Never => return None,
                 Ending::InPort(share) if begin.in_port => share * event.probability,
-                Ending::InPort(_) => return None,
+                Ending::Never | Ending::InPort(_) => return None,
                 ending => ending.probability(event.stay_until(&begin.row), step),
             };
             (probability > 0.0).then(|| self.with_end(i, begin, probability.ln()))

@@ -1,6 +1,18 @@
 //! Analysis of a compass as epochs, models and changes.
 
 mod analysis;
-mod detected_changes;
+mod cargo_entries;
+mod causes;
+mod changes;
+mod diagnostics;
+mod epochs;
+mod faults;
+mod input;
+mod notices;
+mod overlaps;
+mod references;
+mod row_times;
+mod voyage;
 
-pub use analysis::{Input, analyse};
+pub use analysis::analyse;
+pub use input::Input;

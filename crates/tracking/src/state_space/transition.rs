@@ -16,7 +16,7 @@ const DRIFT_S: f64 = 30.0 * 86_400.0;
 /// Memory of an unmeasured list, seconds.
 const LIST_S: f64 = 2.0 * 86_400.0;
 /// Memory of a gyro that settles, seconds.
-const SETTLING_S: f64 = 5400.0;
+pub(crate) const SETTLING_S: f64 = 5400.0;
 /// Memory of friction on one course, seconds: the sea works the card loose.
 const FRICTION_S: f64 = 6.0 * 3600.0;
 /// Change of course from which the card's friction is another, degrees.
