@@ -1,7 +1,9 @@
 //! Whole analysis of a compass by the tracker: samples and logbook to epochs, models and
 //! changes.
 
+use super::band_scale::widened;
 use super::detected_changes::change;
+use super::watch_predictions::WatchPredictions;
 use crate::hypotheses::kinds::Kind;
 use crate::state_space::levels::{Level, Levels};
 use crate::state_space::row::Placed;
@@ -18,7 +20,7 @@ use binnacle_compass::angle::{Deviation, wrap_180};
 use binnacle_compass::azimuth::Azimuth;
 use binnacle_compass::coverage::coverage;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
-use binnacle_compass::model::{Caution, FromData, Identifiable, Model, Quality};
+use binnacle_compass::model::{Caution, Covariance, FromData, Identifiable, Model, Quality};
 use binnacle_compass::result::{
     Analysis, Cause, Epoch, FitError, NoiseLevels, ReferenceCheck, SampleReason,
 };
@@ -90,6 +92,7 @@ struct Voyage {
     observations: Vec<Observation>,
     pairs: u64,
     squares: f64,
+    predictions: WatchPredictions,
     settings: AnalysisSettings,
 }
 
@@ -129,6 +132,7 @@ impl Voyage {
             observations: Vec::new(),
             pairs: 0,
             squares: 0.0,
+            predictions: WatchPredictions::default(),
             settings: input.settings,
         }
     }
@@ -153,9 +157,15 @@ impl Voyage {
             variation,
             earth,
         };
+        if self.observations.len() >= NEEDED_SAMPLES {
+            self.predictions.before(&sample, &self.tracker);
+        }
         let Some(tracked) = self.tracker.read(&placed) else {
             return;
         };
+        if self.observations.len() >= NEEDED_SAMPLES {
+            self.predictions.after(&tracked, &self.tracker);
+        }
         self.diagnose(reading, &tracked);
         self.read_azimuths(Some(time));
     }
@@ -184,6 +194,7 @@ impl Voyage {
                 ship_before,
             });
         }
+        self.predictions.interrupt();
         self.tracker.note(note.kind);
     }
 
@@ -226,6 +237,7 @@ impl Voyage {
 
     fn finish(mut self, readings: Vec<Reading>) -> Analysis {
         self.read_azimuths(None);
+        self.predictions.interrupt();
         let epochs = self.epochs();
         let mut changes: Vec<_> = self.tracker.detected.iter().map(change).collect();
         changes.sort_by_key(|change| (change.from, change.detected_at));
@@ -241,6 +253,7 @@ impl Voyage {
             data_until: readings.last().map(|r| r.sample().time),
             last_place: readings.iter().rev().find_map(Reading::place),
             coverage,
+            predictions: Some(self.predictions.coverage(None, &self.tracker.detected)),
             epochs,
             changes,
             notices: self.notices(),
@@ -377,7 +390,7 @@ impl Voyage {
         Ok(Model {
             parameters_over_lambda: seen.parameters(),
             constant_deg: wrap_180(seen.mean[7]),
-            covariance: Some(seen.covariance),
+            covariance: Some(self.checked_covariance(&seen, to)),
             identifiable: Some(identifiable),
             rms_deg: Some(rms),
             samples_used: known.len() as u64,
@@ -400,6 +413,13 @@ impl Voyage {
                 cautions,
             }),
         })
+    }
+
+    /// Returns the covariance of a ship's state, widened where predictions fell short by then.
+    fn checked_covariance(&self, seen: &ShipState, to: Option<Timestamp>) -> Covariance {
+        let check = self.predictions.coverage(to, &self.tracker.detected);
+        let constant_deg = self.settings.reference_constant_sd_deg;
+        widened(&seen.covariance, check.widening, constant_deg.powi(2))
     }
 
     fn notices(&self) -> Vec<String> {

@@ -57,6 +57,7 @@ pub(crate) struct Tracker {
 /// Row as the lead predicted and read it.
 pub(crate) struct Tracked {
     pub(crate) read: Read,
+    pub(crate) row: Row,
 }
 
 impl Tracker {
@@ -225,7 +226,10 @@ impl Tracker {
         let learns = self.is_settled();
         self.learning.read(row, &usual, gained, learns);
         self.sums.add(row, &read);
-        Tracked { read }
+        Tracked {
+            read,
+            row: row.clone(),
+        }
     }
 
     /// Returns true while the lead is alone in what it supposes.
