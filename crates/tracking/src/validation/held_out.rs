@@ -67,7 +67,7 @@ pub(super) fn held_out<'a>(
         }));
     };
     let residuals: Vec<Residual<'_>> = samples.filter_map(|s| residual(model, s)).collect();
-    let noise = ReferenceNoise::new(epoch);
+    let noise = ReferenceNoise::new(epoch, learnt.predictions);
     let (mut courses, mut courses_inside) = (0, 0);
     for course in split_into_courses(&residuals) {
         let n = course.len() as f64;

@@ -1,7 +1,7 @@
 //! Validation of the method on anyone's own recording: what was predicted before it was used,
 //! and what the model of one part says of another.
 //!
-//! The same reference stands behind both parts, so that an error of it which lasts, or depends on
+//! One reference stands behind both parts, so that an error of it which lasts, or depends on
 //! the heading alone, shows in none of this.
 
 mod held_out;
@@ -15,9 +15,10 @@ pub use settle::{Settled, settle};
 
 use crate::report::{Input, analyse};
 use binnacle_compass::result::{
-    Analysis, Change, FitError, PredictionCoverage, SampleDiagnostic, SampleReason,
+    Analysis, Change, Epoch, FitError, PredictionCoverage, SampleDiagnostic, SampleReason,
 };
 use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use held_out::held_out;
 use serde::Serialize;
 
@@ -41,6 +42,8 @@ pub struct Validation {
     pub changes: Vec<Change>,
     /// Reason for which the whole recording has no model.
     pub refusal: Option<FitError>,
+    /// Longest stretch without a change or an entry that ends an epoch: the parts are its parts.
+    pub stretch: Stretch,
     /// Parts held against each other.
     pub parts: Vec<PartCheck>,
 }
@@ -50,6 +53,17 @@ pub struct Validation {
 pub struct Refused {
     /// Reason.
     pub reason: SampleReason,
+    /// Number of samples.
+    pub samples: u64,
+}
+
+/// Samples used between two changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Stretch {
+    /// Time of the first sample; none without any.
+    pub from: Option<Timestamp>,
+    /// Time of the last sample.
+    pub to: Option<Timestamp>,
     /// Number of samples.
     pub samples: u64,
 }
@@ -88,16 +102,17 @@ pub fn validate(input: &Input<'_>) -> Validation {
         samples: &settled.samples,
         ..*input
     });
+    let stretch = longest_stretch(&analysis);
     let mut parts = Vec::new();
     for (one, other) in [
         (Part::FirstHalf, Part::SecondHalf),
         (Part::OddDays, Part::EvenDays),
     ] {
-        if one == Part::OddDays && days(&analysis.samples) < NEEDED_DAYS {
+        if one == Part::OddDays && days(&stretch) < NEEDED_DAYS {
             continue;
         }
-        parts.push(check(one, other, input, &analysis));
-        parts.push(check(other, one, input, &analysis));
+        parts.push(check(one, other, input, &stretch));
+        parts.push(check(other, one, input, &stretch));
     }
     let changes = analysis.changes.iter();
     Validation {
@@ -109,18 +124,41 @@ pub fn validate(input: &Input<'_>) -> Validation {
             .cloned()
             .collect(),
         refusal: analysis.current_epoch().and_then(|e| e.refusal.clone()),
+        stretch: Stretch {
+            from: stretch.first().map(|s| s.sample.time),
+            to: stretch.last().map(|s| s.sample.time),
+            samples: stretch.len() as u64,
+        },
         parts,
         settled,
     }
 }
 
-fn check(model_of: Part, predicted: Part, input: &Input<'_>, whole: &Analysis) -> PartCheck {
-    let used: Vec<&SampleDiagnostic> = whole.samples.iter().filter(|s| s.used).collect();
+/// Returns the samples used of the epoch that has most.
+fn longest_stretch(analysis: &Analysis) -> Vec<&SampleDiagnostic> {
+    let of = |epoch: &Epoch| -> Vec<&SampleDiagnostic> {
+        let within = analysis.samples.iter().filter(|s| {
+            let time = s.sample.time;
+            s.used
+                && epoch.from.is_none_or(|from| time > from)
+                && epoch.to.is_none_or(|to| time <= to)
+        });
+        within.collect()
+    };
+    let stretches = analysis.epochs.iter().map(of);
+    stretches.max_by_key(Vec::len).unwrap_or_default()
+}
+
+fn check(
+    model_of: Part,
+    predicted: Part,
+    input: &Input<'_>,
+    stretch: &[&SampleDiagnostic],
+) -> PartCheck {
     let of = |part: Part| {
-        let indexed = used.iter().enumerate();
-        let count = used.len();
+        let indexed = stretch.iter().enumerate();
         indexed
-            .filter(move |(index, sample)| part.has(*index, count, &sample.sample))
+            .filter(move |(index, sample)| part.has(*index, stretch.len(), &sample.sample))
             .map(|(_, sample)| *sample)
     };
     let samples: Vec<Sample> = of(model_of).map(|s| s.sample).collect();
@@ -156,7 +194,7 @@ fn day(sample: &Sample) -> i64 {
     sample.time.micros().div_euclid(DAY_MICROS)
 }
 
-fn days(samples: &[SampleDiagnostic]) -> usize {
+fn days(samples: &[&SampleDiagnostic]) -> usize {
     let mut days: Vec<i64> = samples.iter().map(|s| day(&s.sample)).collect();
     days.dedup();
     days.len()

@@ -2,7 +2,7 @@
 
 use super::residual::Residual;
 use binnacle_analysis::estimate::{COMPASS_SWING_S, SATELLITE_S, SLOW_GYRO_S};
-use binnacle_compass::result::{Epoch, NoiseLevels};
+use binnacle_compass::result::{Epoch, NoiseLevels, PredictionCoverage};
 use binnacle_compass::time::Timestamp;
 
 /// Horizontal field for which the variation's error is given, nT.
@@ -19,13 +19,16 @@ pub(super) struct ReferenceNoise {
     levels: NoiseLevels,
     /// Time of the model.
     model_at: Option<Timestamp>,
+    /// Factor of all variances by the predictions that the model was made from.
+    scale: f64,
 }
 
 impl ReferenceNoise {
-    pub(super) fn new(learnt: &Epoch) -> ReferenceNoise {
+    pub(super) fn new(learnt: &Epoch, check: Option<PredictionCoverage>) -> ReferenceNoise {
         ReferenceNoise {
             levels: learnt.noise.unwrap_or(NoiseLevels::TYPICAL),
             model_at: learnt.data_until,
+            scale: check.map_or(1.0, |check| check.widening.powi(2)),
         }
     }
 
@@ -55,11 +58,12 @@ impl ReferenceNoise {
             .model_at
             .map_or(0.0, |at| first_sample.time.seconds_since(at).abs());
         let drift_deg = (levels.drift_nt / first.h_nt).to_degrees();
-        reference
+        let variance = reference
             + lasting(levels.compass_swing_deg, COMPASS_SWING_S)
             + variation * variation
             + levels.white_deg.powi(2) * FULL_WINDOWS / windows.max(1.0)
-            + drift_deg * drift_deg * since_s / DRIFT_S
+            + drift_deg * drift_deg * since_s / DRIFT_S;
+        self.scale * variance
     }
 }
 

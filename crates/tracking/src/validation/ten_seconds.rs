@@ -54,9 +54,13 @@ impl TenSeconds {
         self.satellite_off_deg.or(self.gyro_off_deg)
     }
 
-    /// Returns the reference's heading where there is one: the card swings in the sea.
-    pub(super) fn steadiest_deg(&self) -> f64 {
-        self.compass_deg + self.off_deg().unwrap_or(0.0)
+    /// Returns the turn since another one by the steadier of compass and reference: a card swings
+    /// in the sea, and a course over ground jitters.
+    pub(super) fn turned_deg(&self, other: &TenSeconds) -> f64 {
+        let by_compass = wrap_180(self.compass_deg - other.compass_deg).abs();
+        let reference = |t: &TenSeconds| Some(t.compass_deg + t.off_deg()?);
+        let pair = reference(self).zip(reference(other));
+        pair.map_or(by_compass, |(a, b)| by_compass.min(wrap_180(a - b).abs()))
     }
 }
 

@@ -1,0 +1,127 @@
+//! Validation of recordings: predictions before use, and one part held against another.
+
+#![allow(clippy::unwrap_used)] // all of this is tests
+
+#[allow(dead_code)]
+#[path = "../../analysis/tests/voyages/mod.rs"]
+mod voyages;
+
+use binnacle_analysis::fleet_prior::ShipPrior;
+use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_tracking::validation::{Part, Validation, validate};
+use binnacle_tracking::{Input, analyse};
+use voyages::Variety;
+use voyages::fleet::{Event, Log, Plan, sail_log};
+
+fn input(samples: &[Sample]) -> Input<'_> {
+    static PRIOR: std::sync::LazyLock<ShipPrior> = std::sync::LazyLock::new(ShipPrior::population);
+    Input {
+        samples,
+        logbook: &[],
+        azimuths: &[],
+        prior: &PRIOR,
+        settings: AnalysisSettings::default(),
+    }
+}
+
+fn sail(seed: u64, days: f64) -> Log {
+    let mut plan = Plan::new(Event::Nothing, Variety::Medium);
+    plan.days = days;
+    plan.anomalies = 0.0;
+    plan.gyro_faults = 0.0;
+    plan.faults.storms_per_month = 0.0;
+    sail_log(seed, &plan)
+}
+
+/// Returns the samples with the compass's zero moved from the middle one on.
+fn moved_halfway(samples: &[Sample], by_deg: f64) -> Vec<Sample> {
+    let moved = samples.iter().enumerate().map(|(k, sample)| Sample {
+        compass: CompassHeading::new(
+            sample.compass.degrees() + if k < samples.len() / 2 { 0.0 } else { by_deg },
+        )
+        .unwrap(),
+        ..*sample
+    });
+    moved.collect()
+}
+
+fn part(validation: &Validation, predicted: Part) -> (u32, u32, f64) {
+    let checks = validation.parts.iter();
+    let check = checks.clone().find(|p| p.predicted == predicted).unwrap();
+    let held_out = check.held_out.as_ref().unwrap();
+    (
+        held_out.courses_inside,
+        held_out.expected_from,
+        held_out.mean_deg,
+    )
+}
+
+#[test]
+fn watches_of_sound_ships_lie_in_their_band_and_widen_nothing() {
+    let (mut watches, mut inside) = (0, 0);
+    for seed in 1..=4 {
+        let log = sail(seed, 40.0);
+        let check = analyse(&input(&log.samples)).predictions.unwrap();
+        assert_eq!(check.watches, 100, "{check:?}");
+        assert!(check.widening < 1.1, "{check:?}");
+        watches += check.watches;
+        inside += check.watches_inside;
+    }
+    let expected = binnacle_compass::result::expected_inside(watches);
+    assert!(inside >= *expected.start(), "{inside} of {watches}");
+}
+
+#[test]
+fn both_halves_and_alternate_days_of_a_sound_ship_predict_each_other() {
+    let log = sail(5, 20.0);
+    let found = validate(&input(&log.samples));
+    assert_eq!(found.parts.len(), 4);
+    assert_eq!(found.settled.sample_s, None);
+    for predicted in [
+        Part::FirstHalf,
+        Part::SecondHalf,
+        Part::OddDays,
+        Part::EvenDays,
+    ] {
+        let (inside, from, mean_deg) = part(&found, predicted);
+        assert!(inside >= from, "{predicted:?}: {inside} of at least {from}");
+        assert!(mean_deg.abs() < 0.7, "{predicted:?}: {mean_deg}");
+    }
+}
+
+#[test]
+fn a_compass_moved_halfway_fails_the_prediction_of_either_half() {
+    let log = sail(6, 20.0);
+    let found = validate(&input(&moved_halfway(&log.samples, 4.0)));
+    for (predicted, expected_deg) in [(Part::SecondHalf, -4.0), (Part::FirstHalf, 4.0)] {
+        let (inside, from, mean_deg) = part(&found, predicted);
+        assert!(inside < from, "{predicted:?}: {inside} of at least {from}");
+        assert!(
+            (mean_deg - expected_deg).abs() < 1.0,
+            "{predicted:?}: {mean_deg}"
+        );
+    }
+}
+
+#[test]
+fn a_recording_of_an_hour_says_why_it_has_no_model() {
+    let log = sail(7, 3.0);
+    let found = validate(&input(&log.samples[..6]));
+    assert!(found.refusal.is_some());
+    assert_eq!(found.predictions.watches, 0);
+    assert!(
+        found
+            .parts
+            .iter()
+            .all(|p| p.held_out.is_none() && p.refusal.is_some())
+    );
+}
+
+#[test]
+fn nothing_is_validated_without_a_panic() {
+    let found = validate(&input(&[]));
+    assert_eq!((found.used, found.settled.rows), (0, 0));
+    assert!(found.refusal.is_some());
+}
