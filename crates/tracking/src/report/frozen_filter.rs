@@ -9,11 +9,16 @@ use crate::state_space::filter::{Filter, Innovation};
 use crate::state_space::levels::Levels;
 use crate::state_space::row::Row;
 use crate::state_space::scalar::{Silent, deviation};
-use crate::state_space::states::{STATES, dot};
+use crate::state_space::states::{ALIGNMENT, STATES, dot};
 use crate::state_space::transition::{Pair, Transition};
+use binnacle_compass::ship::PARAMETERS;
 
 /// Log weight below the best's from which a hypothesis is left out of the mixture.
 const NEGLIGIBLE: f64 = 7.0;
+
+/// Slopes of a deviation by the ship's parameters, over the population, and the alignment, a
+/// degree.
+pub(super) type ShipLoad = [f64; PARAMETERS + 1];
 
 /// Prediction of the mean of a watch's rows.
 #[derive(Clone, Debug)]
@@ -27,6 +32,8 @@ pub(super) struct FrozenFilter {
     error: f64,
     white: f64,
     weight: f64,
+    /// Weighted sum of the loads of the ship's states.
+    load: ShipLoad,
 }
 
 impl FrozenFilter {
@@ -54,6 +61,7 @@ impl FrozenFilter {
             error: 0.0,
             white: 0.0,
             weight: 0.0,
+            load: [0.0; PARAMETERS + 1],
         })
     }
 
@@ -72,6 +80,19 @@ impl FrozenFilter {
         self.error += weight * scalar.innovation;
         self.white += weight * weight * scalar.variance;
         self.weight += weight;
+        let ship = scalar.load[..PARAMETERS].iter();
+        for (sum, x) in self
+            .load
+            .iter_mut()
+            .zip(ship.chain([&scalar.load[ALIGNMENT]]))
+        {
+            *sum += weight * x;
+        }
+    }
+
+    /// Returns the mean slopes of the rows by the ship; not a number without a row.
+    pub(super) fn ship_load(&self) -> ShipLoad {
+        self.load.map(|sum| sum / self.weight)
     }
 
     /// Returns the mean of the rows less its prediction; none without a row.

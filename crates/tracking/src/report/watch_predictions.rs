@@ -5,8 +5,8 @@
 //! what that one said. The first rows on another heading are what tests her model: so the mean
 //! of a watch is held against its prediction by a filter that stands still meanwhile.
 
-use super::band_scale::scale;
-use super::frozen_filter::FrozenFilter;
+use super::band_scale::{Error, scale};
+use super::frozen_filter::{FrozenFilter, ShipLoad};
 use crate::state_space::filter::Innovation;
 use crate::weighing::records::{Class, Detected};
 use crate::weighing::tracker::{Tracked, Tracker};
@@ -23,6 +23,7 @@ const GAP_S: f64 = 3600.0;
 const TURN_DEG: f64 = 15.0;
 /// Latest watches that count: a month of a ship that is half of it at sea.
 const LATEST: usize = 100;
+const DAY_MICROS: i64 = 86_400_000_000;
 /// Half the width of a 95 % band, standard deviations.
 const BAND_SD: f64 = 1.96;
 
@@ -32,6 +33,7 @@ struct Watch {
     from: Timestamp,
     until: Timestamp,
     mean: Innovation,
+    load: ShipLoad,
 }
 
 /// Watch that goes on.
@@ -87,6 +89,7 @@ impl WatchPredictions {
                 from: open.from,
                 until: open.until,
                 mean,
+                load: open.filter.ship_load(),
             });
         }
     }
@@ -108,10 +111,10 @@ impl WatchPredictions {
             if detected.iter().any(|detected| disturbs(detected, watch)) {
                 watches_disturbed += 1;
             } else {
-                latest.push(watch.mean.z_squared());
+                latest.push(watch.error());
             }
         }
-        let inside = |z_squared: &&f64| **z_squared <= BAND_SD * BAND_SD;
+        let inside = |error: &&Error| error.deviations.abs() <= BAND_SD;
         let watches = latest.len() as u32;
         let expected = expected_inside(watches);
         let scale = scale(&latest);
@@ -125,6 +128,17 @@ impl WatchPredictions {
             watches_disturbed,
             mean_square: scale.mean_square,
             widening: scale.widening,
+        }
+    }
+}
+
+impl Watch {
+    fn error(&self) -> Error {
+        let sd = self.mean.variance.sqrt();
+        Error {
+            day: self.from.micros().div_euclid(DAY_MICROS),
+            deviations: self.mean.value / sd,
+            load: self.load.map(|x| x / sd),
         }
     }
 }
