@@ -94,7 +94,8 @@ fn describe_predictions(check: &PredictionCoverage) -> String {
     let disturbed = match check.watches_disturbed {
         0 => String::new(),
         count => format!(
-            "\n{count} more watches lie in a reported change or disturbance and do not count"
+            "\n{count} more watches lie between a reported change or fault and its detection, and do \
+             not count"
         ),
     };
     format!(

@@ -34,7 +34,8 @@ pub struct PredictionCoverage {
     /// Most watches inside that a right band may have by chance, at 95 %.
     #[cfg_attr(feature = "openapi", schema(example = 99))]
     pub expected_to: u32,
-    /// Watches left out: a change that the analysis reports began or went on in them.
+    /// Watches left out: they lie between a reported change, or fault of an instrument, and its
+    /// detection.
     #[cfg_attr(feature = "openapi", schema(example = 2))]
     pub watches_disturbed: u32,
     /// Mean square of the watches' errors over their predicted variance, each at most 9; 1 is

@@ -152,12 +152,11 @@ impl OpenWatch {
     }
 }
 
-/// Returns true if an event began in the watch, or went on in it without the filter's knowledge.
+/// Returns true if the watch lies between an event that lasts and its detection. What passes by
+/// counts: whoever steers by the band meets it, and a detector must not excuse itself by it.
 fn disturbs(detected: &Detected, watch: &Watch) -> bool {
-    let event = &detected.event;
-    let over = match detected.class {
-        Class::Passing | Class::Compass => event.until.unwrap_or(detected.at).max(detected.at),
-        Class::Ship | Class::Reference => detected.at,
-    };
-    detected.withdrawn.is_none() && watch.until >= event.from && watch.from <= over
+    detected.class != Class::Passing
+        && detected.withdrawn.is_none()
+        && watch.until >= detected.event.from
+        && watch.from <= detected.at
 }
