@@ -1,6 +1,6 @@
 //! Scale of the band by what became of predictions, and the band widened by it.
 //!
-//! What counts is not the noise of a watch but what it does to the model. Errors that the filter
+//! The noise of a watch counts less than its effect on the model. Errors that the filter
 //! does not know may last for a day: wind, a sea, a gyro's mood. They leave each watch within its
 //! band and the model far off, as it takes ten watches of one day for ten witnesses. So the errors
 //! are added up by day, each times its slopes by the ship over its variance. The covariance of
