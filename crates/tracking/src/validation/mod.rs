@@ -76,9 +76,9 @@ pub enum Part {
     FirstHalf,
     /// Samples from the middle one on.
     SecondHalf,
-    /// Days of odd number since 1970, UTC.
+    /// First, third, fifth … UTC day with samples.
     OddDays,
-    /// Days of even number since 1970, UTC.
+    /// Second, fourth, sixth … UTC day with samples.
     EvenDays,
 }
 
@@ -108,7 +108,7 @@ pub fn validate(input: &Input<'_>) -> Validation {
         (Part::FirstHalf, Part::SecondHalf),
         (Part::OddDays, Part::EvenDays),
     ] {
-        if one == Part::OddDays && days(&stretch) < NEEDED_DAYS {
+        if one == Part::OddDays && days(&stretch).len() < NEEDED_DAYS {
             continue;
         }
         parts.push(check(one, other, input, &stretch));
@@ -155,11 +155,17 @@ fn check(
     input: &Input<'_>,
     stretch: &[&SampleDiagnostic],
 ) -> PartCheck {
+    let days = days(stretch);
     let of = |part: Part| {
+        let day_of = |sample: &SampleDiagnostic| days.partition_point(|d| *d < day(&sample.sample));
         let indexed = stretch.iter().enumerate();
-        indexed
-            .filter(move |(index, sample)| part.has(*index, stretch.len(), &sample.sample))
-            .map(|(_, sample)| *sample)
+        let within = indexed.filter(move |(index, sample)| match part {
+            Part::FirstHalf => *index < stretch.len() / 2,
+            Part::SecondHalf => *index >= stretch.len() / 2,
+            Part::OddDays => day_of(sample).is_multiple_of(2),
+            Part::EvenDays => !day_of(sample).is_multiple_of(2),
+        });
+        within.map(|(_, sample)| *sample)
     };
     let samples: Vec<Sample> = of(model_of).map(|s| s.sample).collect();
     let learnt = analyse(&Input {
@@ -178,26 +184,15 @@ fn check(
     }
 }
 
-impl Part {
-    fn has(self, index: usize, count: usize, sample: &Sample) -> bool {
-        let is_odd_day = day(sample).rem_euclid(2) == 1;
-        match self {
-            Part::FirstHalf => index < count / 2,
-            Part::SecondHalf => index >= count / 2,
-            Part::OddDays => is_odd_day,
-            Part::EvenDays => !is_odd_day,
-        }
-    }
-}
-
 fn day(sample: &Sample) -> i64 {
     sample.time.micros().div_euclid(DAY_MICROS)
 }
 
-fn days(samples: &[&SampleDiagnostic]) -> usize {
+/// Returns the days with samples, in order.
+fn days(samples: &[&SampleDiagnostic]) -> Vec<i64> {
     let mut days: Vec<i64> = samples.iter().map(|s| day(&s.sample)).collect();
     days.dedup();
-    days.len()
+    days
 }
 
 fn refused(samples: &[SampleDiagnostic]) -> Vec<Refused> {
