@@ -20,6 +20,8 @@ const STEADY_DEG: f64 = 7.5;
 /// the bowl's liquid comes to rest.
 const TURN_DEG: f64 = 10.0;
 const REST: i64 = 6;
+/// Tens of seconds with readings that are enough of that minute.
+const ENOUGH_REST: usize = 3;
 /// Tens of seconds without a reading that end a sample.
 const GAP: i64 = 3;
 /// Speed below which a vessel is at rest, knots: quay steel, and no course over ground.
@@ -120,7 +122,7 @@ fn cut(tens: &[&TenSeconds], longest: usize) -> (Vec<Sample>, usize) {
 fn is_at_ease(before: &[&TenSeconds], now: &TenSeconds) -> bool {
     let since = before.partition_point(|t| now.index - t.index > REST);
     let minute = &before[since..];
-    minute.len() as i64 * 2 >= REST && minute.iter().all(|t| t.turned_deg(now) <= TURN_DEG)
+    minute.len() >= ENOUGH_REST && minute.iter().all(|t| t.turned_deg(now) <= TURN_DEG)
 }
 
 /// Returns the tens of seconds that keep the first one's heading without a gap.
