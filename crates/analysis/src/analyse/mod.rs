@@ -73,6 +73,7 @@ pub fn analyse(
         data_until: readings.last().map(|r| r.sample().time),
         last_place: readings.iter().rev().find_map(Reading::place),
         coverage,
+        predictions: None,
         epochs,
         changes,
         notices,

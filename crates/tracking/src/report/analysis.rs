@@ -46,6 +46,8 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
     let contradicted = include_contradicted(&spans, &mut readings, logbook);
     let fitting = Fitting {
         rows: &voyage.rows,
+        predictions: &voyage.predictions,
+        detected: &tracker.detected,
         references: &references,
         faults: &faults,
         prior: input.prior,
@@ -76,6 +78,7 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
         data_until: readings.last().map(|r| r.sample().time),
         last_place: readings.iter().rev().find_map(Reading::place),
         coverage: covered(&readings),
+        predictions: Some(voyage.predictions.coverage(None, &tracker.detected)),
         epochs,
         changes,
         samples: readings.into_iter().map(|r| r.diagnostic).collect(),

@@ -10,6 +10,7 @@ mod faults;
 mod input;
 mod notices;
 mod overlaps;
+mod predictions;
 mod references;
 mod row_times;
 mod voyage;

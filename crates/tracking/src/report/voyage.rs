@@ -1,6 +1,7 @@
 //! Reading of a voyage: samples, logbook and azimuths in order of time.
 
 use super::input::Input;
+use super::predictions::WatchPredictions;
 use crate::state_space::row::Placed;
 use crate::state_space::ship_state::ShipState;
 use crate::weighing::tracker::Tracker;
@@ -11,6 +12,9 @@ use binnacle_compass::result::SampleReason;
 use binnacle_compass::time::Timestamp;
 use std::cmp::Ordering;
 
+/// Least number of samples of an epoch of a ship that is not known.
+pub(super) const NEEDED_SAMPLES: usize = 12;
+
 /// Voyage after all has been read.
 pub(super) struct Voyage {
     pub(super) tracker: Tracker,
@@ -20,6 +24,7 @@ pub(super) struct Voyage {
     pub(super) works: Vec<LoggedWork>,
     /// Number of azimuths with no sample near them in time.
     pub(super) azimuths_unread: usize,
+    pub(super) predictions: WatchPredictions,
 }
 
 /// Row that was read.
@@ -60,6 +65,7 @@ pub(super) fn read_voyage(input: &Input<'_>, readings: &[Reading]) -> Voyage {
         rows: Vec::new(),
         works: Vec::new(),
         azimuths_unread: 0,
+        predictions: WatchPredictions::default(),
     };
     for (place, reading) in readings.iter().enumerate() {
         let time = reading.sample().time;
@@ -80,6 +86,7 @@ pub(super) fn read_voyage(input: &Input<'_>, readings: &[Reading]) -> Voyage {
     for azimuth in azimuths.iter().rev() {
         voyage.read_azimuth(azimuth);
     }
+    voyage.predictions.interrupt();
     voyage
 }
 
@@ -119,6 +126,7 @@ impl Voyage {
                 ship_before: self.tracker.current_ship(),
             });
         }
+        self.predictions.interrupt();
         self.tracker.note(note.kind);
     }
 
@@ -136,7 +144,14 @@ impl Voyage {
             variation,
             earth,
         };
+        let is_predicted = self.rows.len() >= NEEDED_SAMPLES;
+        if is_predicted {
+            self.predictions.before(placed.sample, &self.tracker);
+        }
         if let Some(tracked) = self.tracker.read(&placed) {
+            if is_predicted {
+                self.predictions.after(&tracked, &self.tracker);
+            }
             self.rows.push(TrackedRow {
                 place,
                 time: reading.sample().time,

@@ -59,6 +59,7 @@ pub(crate) struct Tracked {
     pub(crate) read: Read,
     /// True if the ship was in port since the row before.
     pub(crate) after_port: bool,
+    pub(crate) row: Row,
 }
 
 impl Tracker {
@@ -230,6 +231,7 @@ impl Tracker {
         Tracked {
             read,
             after_port: row.after_port,
+            row: row.clone(),
         }
     }
 

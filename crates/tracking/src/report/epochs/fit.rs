@@ -4,9 +4,11 @@ use super::quality::{Knowledge, quality};
 use super::spans::Span;
 use crate::report::diagnostics::{observation, record_outcome};
 use crate::report::faults::Faults;
+use crate::report::predictions::{WatchPredictions, widened};
 use crate::report::references::References;
-use crate::report::voyage::TrackedRow;
+use crate::report::voyage::{NEEDED_SAMPLES, TrackedRow};
 use crate::state_space::ship_state::ShipState;
+use crate::weighing::records::Detected;
 use binnacle_analysis::analyse::reading::{Reading, heading_reading};
 use binnacle_analysis::fit::{Observation, check_headings, check_residuals, long_gap};
 use binnacle_analysis::fleet_prior::ShipPrior;
@@ -16,14 +18,14 @@ use binnacle_compass::model::{Caution, Model};
 use binnacle_compass::result::{Epoch, FitError, NoiseLevels, ReferenceCheck, SampleReason};
 use binnacle_compass::ship::{EarthField, PARAMETERS, WEAKEST_H_NT};
 
-/// Least number of samples of an epoch of a ship that is not known, and of a known ship after a
-/// change.
-const NEEDED_SAMPLES: usize = 12;
+/// Least number of samples of an epoch of a known ship after a change.
 const NEEDED_SAMPLES_KNOWN_SHIP: usize = 6;
 
 /// Input of the fits that all epochs share.
 pub(crate) struct Fitting<'a> {
     pub(crate) rows: &'a [TrackedRow],
+    pub(crate) predictions: &'a WatchPredictions,
+    pub(crate) detected: &'a [Detected],
     pub(crate) references: &'a References,
     pub(crate) faults: &'a Faults,
     pub(crate) prior: &'a ShipPrior,
@@ -153,6 +155,11 @@ impl Fitting<'_> {
             check_headings(&observations)?;
         }
         let mut model = of_ship(ship);
+        model.covariance = model.covariance.map(|covariance| {
+            let check = self.predictions.coverage(span.to, self.detected);
+            let constant_variance = self.one_reference_sd_deg.powi(2);
+            widened(&covariance, check.widening, constant_variance)
+        });
         check_needle(&model, &observations)?;
         for row in &usable {
             record_outcome(&mut readings[row.place], row, &model, &self.noise);
