@@ -111,6 +111,8 @@ pub(crate) struct Hypothesis {
     pub(crate) log_prior: f64,
     /// Number of the starting guess that it descends from.
     pub(crate) start: usize,
+    /// True if the ship's own magnetism changes more than the levels have it.
+    pub(crate) is_lively: bool,
     /// Row whose reading it holds to be wild, the last one.
     pub(crate) wild: Option<usize>,
     /// Event that began or ended in the next row.
@@ -209,6 +211,10 @@ impl Hypothesis {
         silent: Silent,
     ) -> Read {
         self.survive(row);
+        let lively = self.is_lively.then(|| levels.of_lively());
+        let own_usual = lively.as_ref().map(|lively| Transition::to(row, lively));
+        let levels = lively.as_ref().unwrap_or(levels);
+        let usual = own_usual.as_ref().unwrap_or(usual);
         let mut own;
         let transition = if self.events.iter().all(|event| event.until.is_some()) {
             usual

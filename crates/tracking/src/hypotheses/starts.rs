@@ -31,6 +31,9 @@ const SIZES: [Guess; 2] = [guess(1.0, 0.85), guess(2.5, 0.15)];
 /// Guesses of the gyro's speed error that is left in the reading.
 const SPEED_ERRORS: [Guess; 2] = [guess(0.0, 0.85), guess(1.0, 0.15)];
 
+/// Probability that a ship is lively.
+const LIVELY: f64 = 0.15;
+
 /// Returns the starting hypotheses: each guess with each other, for each component of what is
 /// known of ships like her.
 pub(crate) fn starts(
@@ -54,14 +57,18 @@ pub(crate) fn starts(
                     let is_last = nth + 1 == ALIGNMENTS.len();
                     let filter =
                         with_alignment(&filter, alignment.size, is_last.then_some(row), levels);
-                    starts.push(Hypothesis {
-                        filter,
-                        events: Vec::new(),
-                        log_prior: f64::ln(probability * alignment.probability),
-                        start: starts.len(),
-                        wild: None,
-                        amid: None,
-                    });
+                    for (is_lively, share) in [(false, 1.0 - LIVELY), (true, LIVELY)] {
+                        let probability = probability * alignment.probability * share;
+                        starts.push(Hypothesis {
+                            filter: filter.clone(),
+                            events: Vec::new(),
+                            log_prior: probability.ln(),
+                            start: starts.len(),
+                            is_lively,
+                            wild: None,
+                            amid: None,
+                        });
+                    }
                 }
             }
         }
@@ -94,8 +101,8 @@ fn with_alignment(filter: &Filter, sd_deg: f64, at: Option<&Row>, levels: &Level
 
 fn deviations(levels: &Levels, reference_sd_deg: f64) -> [f64; STATES] {
     let mut sd = [0.0; STATES];
-    sd[RETENTION] = 0.7;
-    sd[RETENTION + 1] = 0.7;
+    sd[RETENTION] = 1.0;
+    sd[RETENTION + 1] = 1.0;
     sd[HEEL] = 1.0;
     sd[LIST] = levels.at(Level::List) / LIST_NT;
     sd[SWING] = levels.at(Level::Swing);

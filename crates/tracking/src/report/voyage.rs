@@ -33,7 +33,8 @@ pub(super) struct TrackedRow {
     /// Place among the readings.
     pub(super) place: usize,
     pub(super) time: Timestamp,
-    /// Square of the innovation, standard deviations.
+    /// Innovation, degrees, and its square in standard deviations.
+    pub(super) innovation_deg: f64,
     pub(super) z_squared: f64,
     /// True if the vessel was in port since the row before.
     pub(super) after_port: bool,
@@ -155,6 +156,7 @@ impl Voyage {
             self.rows.push(TrackedRow {
                 place,
                 time: reading.sample().time,
+                innovation_deg: tracked.read.deviation.value,
                 z_squared: tracked.read.deviation.z_squared(),
                 after_port: tracked.after_port,
             });

@@ -4,6 +4,8 @@
 //! by filters that run beside with one level nudged (recursive maximum likelihood, Ljung &
 //! Söderström 1983, chapter 3).
 
+/// Changes of a lively ship's own magnetism, over those of other ships.
+const LIVELY: f64 = 4.0;
 /// Number of levels.
 pub(crate) const LEVELS: usize = 11;
 
@@ -96,6 +98,12 @@ impl Levels {
 
     pub(crate) fn at(&self, level: Level) -> f64 {
         self.0[level as usize]
+    }
+
+    /// Returns the levels of a lively ship.
+    pub(crate) fn of_lively(&self) -> Levels {
+        let drifting = self.scaled(Level::Drift, LIVELY);
+        drifting.scaled(Level::PortStep, LIVELY)
     }
 
     /// Returns the levels with one scaled.

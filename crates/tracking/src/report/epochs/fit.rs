@@ -164,9 +164,8 @@ impl Fitting<'_> {
         for row in &usable {
             record_outcome(&mut readings[row.place], row, &model, &self.noise);
         }
-        let residuals = usable
-            .iter()
-            .filter_map(|row| readings[row.place].diagnostic.residual_deg);
+        // By the ship of each time: the latest would not explain a year of small changes.
+        let residuals = usable.iter().map(|row| row.innovation_deg);
         let used = usable.iter();
         let used = used.filter(|row| readings[row.place].diagnostic.used);
         let caution = check_residuals(residuals, &self.noise, used.count() as u64)?;
