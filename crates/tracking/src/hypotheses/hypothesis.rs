@@ -2,7 +2,7 @@
 
 use super::kinds::{Ending, Kind, Stay};
 use crate::state_space::filter::{Filter, Innovation, Marginal};
-use crate::state_space::levels::Levels;
+use crate::state_space::levels::{Level, Levels};
 use crate::state_space::row::Row;
 use crate::state_space::scalar::{
     Scalar, Silent, deviation, difference, sighted_deviation, sighted_gyro,
@@ -111,8 +111,8 @@ pub(crate) struct Hypothesis {
     pub(crate) log_prior: f64,
     /// Number of the starting guess that it descends from.
     pub(crate) start: usize,
-    /// True if the ship's own magnetism changes more than the levels have it.
-    pub(crate) is_lively: bool,
+    /// Level that is larger on this ship than the levels have it, if one is.
+    pub(crate) lively: Option<Level>,
     /// Row whose reading it holds to be wild, the last one.
     pub(crate) wild: Option<usize>,
     /// Event that began or ended in the next row.
@@ -211,7 +211,7 @@ impl Hypothesis {
         silent: Silent,
     ) -> Read {
         self.survive(row);
-        let lively = self.is_lively.then(|| levels.of_lively());
+        let lively = self.lively.map(|level| levels.of_lively(level));
         let own_usual = lively.as_ref().map(|lively| Transition::to(row, lively));
         let levels = lively.as_ref().unwrap_or(levels);
         let usual = own_usual.as_ref().unwrap_or(usual);

@@ -31,8 +31,13 @@ const SIZES: [Guess; 2] = [guess(1.0, 0.85), guess(2.5, 0.15)];
 /// Guesses of the gyro's speed error that is left in the reading.
 const SPEED_ERRORS: [Guess; 2] = [guess(0.0, 0.85), guess(1.0, 0.15)];
 
-/// Probability that a ship is lively.
-const LIVELY: f64 = 0.15;
+/// Guesses of the habit that a ship has much more than others: her magnetism drifts, or jumps
+/// a little at each call.
+const HABITS: [(Option<Level>, f64); 3] = [
+    (None, 0.8),
+    (Some(Level::Drift), 0.1),
+    (Some(Level::PortStep), 0.1),
+];
 
 /// Returns the starting hypotheses: each guess with each other, for each component of what is
 /// known of ships like her.
@@ -57,14 +62,14 @@ pub(crate) fn starts(
                     let is_last = nth + 1 == ALIGNMENTS.len();
                     let filter =
                         with_alignment(&filter, alignment.size, is_last.then_some(row), levels);
-                    for (is_lively, share) in [(false, 1.0 - LIVELY), (true, LIVELY)] {
+                    for (lively, share) in HABITS {
                         let probability = probability * alignment.probability * share;
                         starts.push(Hypothesis {
                             filter: filter.clone(),
                             events: Vec::new(),
                             log_prior: probability.ln(),
                             start: starts.len(),
-                            is_lively,
+                            lively,
                             wild: None,
                             amid: None,
                         });

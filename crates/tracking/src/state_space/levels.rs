@@ -4,7 +4,7 @@
 //! by filters that run beside with one level nudged (recursive maximum likelihood, Ljung &
 //! Söderström 1983, chapter 3).
 
-/// Changes of a lively ship's own magnetism, over those of other ships.
+/// Size of a habit on a ship that has it more than others.
 const LIVELY: f64 = 4.0;
 /// Number of levels.
 pub(crate) const LEVELS: usize = 11;
@@ -100,10 +100,9 @@ impl Levels {
         self.0[level as usize]
     }
 
-    /// Returns the levels of a lively ship.
-    pub(crate) fn of_lively(&self) -> Levels {
-        let drifting = self.scaled(Level::Drift, LIVELY);
-        drifting.scaled(Level::PortStep, LIVELY)
+    /// Returns the levels of a ship on which one is much larger.
+    pub(crate) fn of_lively(&self, level: Level) -> Levels {
+        self.scaled(level, LIVELY)
     }
 
     /// Returns the levels with one scaled.

@@ -2,7 +2,7 @@
 
 use super::records::Tried;
 use super::tracker::Tracker;
-use crate::hypotheses::hypothesis::Hypothesis;
+use crate::hypotheses::hypothesis::{Begin, Hypothesis};
 use crate::hypotheses::kinds::{KINDS, Kind, KindRow};
 use crate::state_space::row::Row;
 use crate::state_space::transition::Transition;
@@ -20,6 +20,10 @@ const STOOD_DEG: f64 = 2.0;
 const TURNED_DEG: f64 = 10.0;
 /// Least time between checkpoints for which an event's prior counts, seconds.
 const LEAST_EXPOSURE_S: f64 = 300.0;
+
+/// Rows after each of which a drift may begin, and the usual time between rows, seconds.
+pub(super) const DRIFT_ROWS: usize = 144;
+const USUAL_ROW_S: f64 = 600.0;
 
 /// Log likelihood ratio from which a jump is worth a look, and a slow growth.
 const JUMP_SEEN: f64 = 3.0;
@@ -129,6 +133,17 @@ impl Tracker {
         }
         let tried = proposals.iter().map(|p| self.tried_at(p.kind, p.start));
         self.tried.extend(tried.collect::<Vec<_>>());
+    }
+
+    /// Supposes that a drift begins: it shows in no row, and a filter follows it before it is
+    /// large.
+    pub(super) fn suppose_drift(&mut self, begin: &Begin) {
+        let kind = Kind::ShipDrift.row();
+        if !self.bank[0].has(kind.kind) {
+            let probability = kind.probability(DRIFT_ROWS as f64 * USUAL_ROW_S, false);
+            let drifting = self.bank[0].with_event(kind.kind, begin, probability.ln());
+            self.bank.push(drifting);
+        }
     }
 
     /// Returns true if an event of the kind lasts by the lead, which a second one would not

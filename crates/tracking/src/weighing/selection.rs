@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Log weight below the best's at which a hypothesis is given up.
 const GIVEN_UP: f64 = 16.0;
 /// Most hypotheses.
-const MOST_HYPOTHESES: usize = 32;
+const MOST_HYPOTHESES: usize = 40;
 /// Log weight by which another hypothesis takes the lead.
 const TAKES_LEAD: f64 = 1.0;
 /// Rows after which the starting guesses are one.
@@ -124,7 +124,7 @@ fn likely(hypothesis: &Hypothesis) -> impl Iterator<Item = &Supposed> {
 /// Returns true if two hypotheses suppose the same events.
 fn is_same(a: &Hypothesis, b: &Hypothesis, merges_starts: bool) -> bool {
     a.wild == b.wild
-        && a.is_lively == b.is_lively
+        && a.lively == b.lively
         && (merges_starts || a.start == b.start)
         && likely(a).count() == likely(b).count()
         && likely(a).zip(likely(b)).all(|(a, b)| {
@@ -151,7 +151,7 @@ fn is_alike(a: &Hypothesis, b: &Hypothesis) -> bool {
             })
             .collect()
     };
-    a.is_lively == b.is_lively
+    a.lively == b.lively
         && moving(a) == moving(b)
         && (0..STATES).all(|i| {
             let variance = a.filter.covariance[i][i].min(b.filter.covariance[i][i]);

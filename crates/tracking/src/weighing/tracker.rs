@@ -2,6 +2,7 @@
 
 use super::evidence_sums::EvidenceSums;
 use super::learning::Learning;
+use super::proposals::DRIFT_ROWS;
 use super::records::{Checkpoint, Detected, Tried};
 use crate::hypotheses::hypothesis::{Begin, Hypothesis, Read};
 use crate::hypotheses::kinds::{Kind, Stay};
@@ -95,6 +96,9 @@ impl Tracker {
         self.keep_checkpoint(&row);
         if row.after_port || self.count.is_multiple_of(END_ROWS) {
             self.suppose_endings(&row);
+        }
+        if self.count.is_multiple_of(DRIFT_ROWS) {
+            self.suppose_drift(&self.begin(&row));
         }
         let tracked = self.read_all(&row);
         self.rows.push_back(row);

@@ -13,7 +13,7 @@ use binnacle_compass::time::Timestamp;
 fn after_discharge_the_base_model_is_resumed() {
     let mut plan = calm(Event::Cargo);
     plan.days = 90.0;
-    let log = sail_log(40, &plan);
+    let log = sail_log(43, &plan);
     let cargo = log.happened.iter().find(|h| h.what == Name::Cargo).unwrap();
     let analysis = run(&log.samples);
     is_sound(&analysis);
@@ -55,7 +55,7 @@ fn a_discharge_that_was_reported_has_the_base_model_back_with_the_first_sample()
         let epoch = analysis.current_epoch().unwrap();
         let is_base = epoch.resumes == Some(0) || epoch.begun_by_change.is_none();
         assert!(is_base, "seed {seed}: {:?}", analysis.changes);
-        assert!(epoch.model.is_some());
+        assert!(epoch.model.is_some(), "seed {seed}: {:?}", epoch.refusal);
     }
 }
 

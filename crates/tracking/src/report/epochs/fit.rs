@@ -168,7 +168,12 @@ impl Fitting<'_> {
         let residuals = usable.iter().map(|row| row.innovation_deg);
         let used = usable.iter();
         let used = used.filter(|row| readings[row.place].diagnostic.used);
-        let caution = check_residuals(residuals, &self.noise, used.count() as u64)?;
+        // A few rows after a change may all have been read before it was known.
+        let caution = if usable.len() < NEEDED_SAMPLES {
+            None
+        } else {
+            check_residuals(residuals, &self.noise, used.count() as u64)?
+        };
         self.complete(&mut model, &observations, ship, caution);
         count(&mut model, &readings[span.own.clone()], &earlier, before);
         Ok(model)
