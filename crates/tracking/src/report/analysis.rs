@@ -1,6 +1,7 @@
 //! Whole analysis of a compass by the tracker: samples and logbook to epochs, models and
 //! changes.
 
+use super::course_use::CourseUse;
 use super::detected_changes::change;
 use crate::hypotheses::kinds::Kind;
 use crate::state_space::levels::{Level, Levels};
@@ -10,15 +11,16 @@ use crate::weighing::records::{Class, Detected};
 use crate::weighing::tracker::{Tracked, Tracker};
 use binnacle_analysis::analyse::berth_stays::mark_alongside;
 use binnacle_analysis::analyse::reading::{Reading, readings};
+use binnacle_analysis::analyse::steady_course::mark_unsteady_courses;
 use binnacle_analysis::estimate::{POPULATION_SD, weight};
 use binnacle_analysis::fit::Observation;
 use binnacle_analysis::fit::check_headings;
 use binnacle_analysis::fleet_prior::ShipPrior;
-use binnacle_compass::angle::{Deviation, wrap_180};
+use binnacle_compass::angle::{CourseOverGround, Deviation, TrueHeading, wrap_180};
 use binnacle_compass::azimuth::Azimuth;
 use binnacle_compass::coverage::coverage;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
-use binnacle_compass::model::{Caution, FromData, Identifiable, Model, Quality};
+use binnacle_compass::model::{Caution, FromData, Identifiable, Model, Quality, ReferenceGrade};
 use binnacle_compass::result::{
     Analysis, Cause, Epoch, FitError, NoiseLevels, ReferenceCheck, SampleReason,
 };
@@ -61,9 +63,13 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
         ..
     } = *input;
     let settings = &settings;
-    let mut readings = readings(samples, logbook, settings);
+    let grade = ReferenceGrade::of(samples);
+    let mut readings = readings(samples, logbook, settings, grade);
     mark_alongside(&mut readings);
-    let mut voyage = Voyage::new(input);
+    if grade == ReferenceGrade::CourseOverGround {
+        mark_unsteady_courses(&mut readings);
+    }
+    let mut voyage = Voyage::new(input, CourseUse::count(grade, &readings));
     for reading in &mut readings {
         voyage.read(reading);
     }
@@ -91,6 +97,7 @@ struct Voyage {
     pairs: u64,
     squares: f64,
     settings: AnalysisSettings,
+    course: Option<CourseUse>,
 }
 
 /// Note of the logbook at its time.
@@ -102,7 +109,7 @@ struct Note {
 }
 
 impl Voyage {
-    fn new(input: &Input<'_>) -> Voyage {
+    fn new(input: &Input<'_>, course: Option<CourseUse>) -> Voyage {
         let logbook = input.logbook;
         let mut azimuths = input.azimuths.to_vec();
         azimuths.sort_by(|a, b| in_order(b, a));
@@ -130,6 +137,7 @@ impl Voyage {
             pairs: 0,
             squares: 0.0,
             settings: input.settings,
+            course,
         }
     }
 
@@ -193,10 +201,12 @@ impl Voyage {
         let (Some(variation), Some(earth)) = (reading.variation, reading.earth) else {
             return;
         };
-        let heading = sample.satellite.or(reading.gyro);
-        let Some(heading) = heading else { return };
-        let measured =
-            wrap_180(heading.degrees() - variation.degrees_east() - sample.compass.degrees());
+        let heading = sample.satellite.or(reading.gyro).map(TrueHeading::degrees);
+        let course = sample.cog.map(CourseOverGround::degrees);
+        let Some(heading_deg) = heading.or(course) else {
+            return;
+        };
+        let measured = wrap_180(heading_deg - variation.degrees_east() - sample.compass.degrees());
         let weight = weight(innovation.z_squared());
         let diagnostic = &mut reading.diagnostic;
         diagnostic.deviation_deg = Some(measured);
@@ -334,8 +344,8 @@ impl Voyage {
             resumes,
             data_from: within.first().and_then(|o| o.time),
             data_until: within.last().and_then(|o| o.time),
-            references: Some(self.references()),
-            noise: Some(noise(self.tracker.levels())),
+            references: self.course.is_none().then(|| self.references()),
+            noise: Some(noise(self.tracker.levels(), self.course.is_none())),
             refusal: fitted.as_ref().err().cloned(),
             model: fitted.ok(),
         }
@@ -347,13 +357,16 @@ impl Voyage {
             .observations
             .partition_point(|o| to.is_none_or(|to| o.time.is_some_and(|time| time <= to)));
         let known = &self.observations[..known];
-        let Some(ship) = ship.filter(|_| known.len() >= NEEDED_SAMPLES) else {
-            return Err(FitError::TooFewSamples {
-                found: known.len() as u64,
-                needed: NEEDED_SAMPLES as u64,
-            });
+        let (found, needed) = (known.len() as u64, NEEDED_SAMPLES as u64);
+        let Some(ship) = ship.filter(|_| found >= needed) else {
+            let course = self.course.map(|course| course.refusal(found, needed));
+            return Err(course.unwrap_or(FitError::TooFewSamples { found, needed }));
         };
         check_headings(known)?;
+        let h_nt = known.last().map_or(0.0, |o| o.h_nt);
+        let ship = &self
+            .course
+            .map_or_else(|| ship.clone(), |course| course.widen(ship, h_nt));
         let seen = ship.in_compass_axes();
         let sd = |j: usize| ship.covariance[j][j].max(0.0).sqrt();
         let part = |j: usize| sd(j) / POPULATION_SD[j];
@@ -399,6 +412,10 @@ impl Voyage {
                 },
                 cautions,
             }),
+            reference_grade: match self.course {
+                Some(_) => ReferenceGrade::CourseOverGround,
+                None => ReferenceGrade::Heading,
+            },
         })
     }
 
@@ -409,7 +426,8 @@ impl Voyage {
                 self.unread_azimuths
             )
         });
-        unread.into_iter().collect()
+        let course = self.course.map(CourseUse::notice);
+        unread.into_iter().chain(course).collect()
     }
 
     fn references(&self) -> ReferenceCheck {
@@ -452,16 +470,24 @@ fn in_order(a: &Azimuth, b: &Azimuth) -> std::cmp::Ordering {
         .then(shown(a).total_cmp(&shown(b)))
 }
 
-fn noise(levels: &Levels) -> NoiseLevels {
+/// Returns the levels as reported; those of instruments are zero on a ship without them.
+fn noise(levels: &Levels, has_instruments: bool) -> NoiseLevels {
+    let of_instruments = |level: Level| {
+        if has_instruments {
+            levels.at(level)
+        } else {
+            0.0
+        }
+    };
     NoiseLevels {
         white_deg: levels.at(Level::White),
-        schuler_deg: levels.at(Level::Schuler),
-        turn_deg: 2.0 * levels.at(Level::Schuler),
-        slow_gyro_deg: levels.at(Level::GyroSlow),
+        schuler_deg: of_instruments(Level::Schuler),
+        turn_deg: 2.0 * of_instruments(Level::Schuler),
+        slow_gyro_deg: of_instruments(Level::GyroSlow),
         compass_swing_deg: levels.at(Level::Swing),
         variation_deg: levels.at(Level::Variation),
         drift_nt: levels.at(Level::Drift),
-        satellite_deg: levels.at(Level::Reflection),
-        difference_deg: levels.at(Level::DifferenceWhite),
+        satellite_deg: of_instruments(Level::Reflection),
+        difference_deg: of_instruments(Level::DifferenceWhite),
     }
 }

@@ -18,6 +18,8 @@ const TRIED_AGAIN: f64 = 2.0;
 /// Greatest turn of an instrument that stood, and least of a ship that turned, degrees.
 const STOOD_DEG: f64 = 2.0;
 const TURNED_DEG: f64 = 10.0;
+/// Greatest change of a drift angle, degrees.
+const DRIFT_ANGLE_DEG: f64 = 30.0;
 const YEAR_S: f64 = 365.25 * 86_400.0;
 
 /// Log likelihood ratio from which a jump is worth a look, and a slow growth.
@@ -171,7 +173,10 @@ impl Tracker {
         let compass = turned(|row| Some(row.compass_deg));
         let gyro = turned(|row| row.gyro_deg);
         let satellite = turned(|row| row.satellite_deg);
+        let course = turned(|row| row.course.map(|course| course.deg));
+        let course = course.map(|deg| deg - DRIFT_ANGLE_DEG);
         let (own, others) = match kind {
+            Kind::StuckCard if first.course.is_some() => (compass, [course, course]),
             Kind::StuckCard => (compass, [gyro, satellite]),
             Kind::StuckGyro => (gyro, [compass, satellite]),
             _ => (satellite, [compass, gyro]),
@@ -186,6 +191,9 @@ impl Tracker {
     /// cannot happen there.
     fn log_prior(&self, place: usize, kind: &KindRow) -> Option<f64> {
         let checkpoint = &self.checkpoints[place];
+        if !kind.kind.can_happen(&checkpoint.begin.row) {
+            return None;
+        }
         let next = self.checkpoints.get(place + 1);
         let next = next.map_or(self.rows.back()?.time, |next| next.time);
         let exposure_s = next.seconds_since(checkpoint.time).clamp(300.0, 7200.0);
