@@ -39,12 +39,11 @@ pub(crate) struct EvidenceSums {
 impl EvidenceSums {
     /// Adds a row that was read.
     pub(crate) fn add(&mut self, row: &Row, read: &Read) {
-        let [gyro, satellite] = match row.course {
-            Some(_) => [0.0; 2],
-            None => {
-                let gyro = gyro_share(row, Silent::default());
-                [gyro, 1.0 - gyro]
-            }
+        let [gyro, satellite] = if row.course.is_some() {
+            [0.0; 2]
+        } else {
+            let gyro = gyro_share(row, Silent::default());
+            [gyro, 1.0 - gyro]
         };
         let load = &read.load.load;
         let main = [load[BX], load[BY], 1.0, gyro, satellite];

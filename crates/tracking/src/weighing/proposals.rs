@@ -215,8 +215,11 @@ impl Tracker {
             for (kind, starts) in KINDS.iter().zip(&mut likeliest) {
                 let disturbed = 0.5 * sums.excess();
                 let factor = match kind.kind {
-                    Kind::Storm | Kind::Anomaly => disturbed,
-                    Kind::StuckCard | Kind::StuckGyro | Kind::StuckSatellite => disturbed,
+                    Kind::Storm
+                    | Kind::Anomaly
+                    | Kind::StuckCard
+                    | Kind::StuckGyro
+                    | Kind::StuckSatellite => disturbed,
                     Kind::ShipDrift if greatest >= GROWTH_SEEN => {
                         sums.log_bayes_factor(Kind::Strike.row())
                     }
