@@ -20,6 +20,7 @@ fn main() -> Result<ExitCode> {
         Command::Fit(arguments) => command::fit(&arguments),
         Command::Deviation(arguments) => command::deviation(&arguments),
         Command::Analyse(arguments) => command::analyse(&arguments),
+        Command::Validate(arguments) => command::validate(&arguments),
         Command::VerifyEvidence(arguments) => command::verify_evidence(&arguments),
         Command::Plan(arguments) => command::plan(&arguments),
         Command::Schedule(arguments) => command::schedule(&arguments),

@@ -29,6 +29,7 @@ const USUAL: NoiseLevels = NoiseLevels {
     turn_deg: 0.3,
     satellite_deg: 0.2,
     difference_deg: 0.2,
+    drift_angle_deg: 0.0,
 };
 const BISCAY: EarthField = EarthField {
     h_nt: 24_000.0,

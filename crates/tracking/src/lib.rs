@@ -34,6 +34,7 @@
 mod hypotheses;
 mod report;
 mod state_space;
+pub mod validation;
 mod weighing;
 
 pub use report::{Input, analyse};

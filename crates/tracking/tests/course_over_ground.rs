@@ -11,8 +11,10 @@ use binnacle_compass::result::{Analysis, Cause, Change, FitError, SampleReason};
 use binnacle_compass::sample::Sample;
 use binnacle_compass::settings::AnalysisSettings;
 use binnacle_compass::ship::EarthField;
+use binnacle_tracking::validation::validate;
 use binnacle_tracking::{Input, analyse};
 use drifting_ship::{Plan, Voyage, sail};
+use std::sync::LazyLock;
 
 const SOUND: Plan = Plan {
     days: 60.0,
@@ -20,14 +22,19 @@ const SOUND: Plan = Plan {
     drifts: false,
 };
 
-fn run(samples: &[Sample]) -> Analysis {
-    analyse(&Input {
+fn input(samples: &[Sample]) -> Input<'_> {
+    static PRIOR: LazyLock<ShipPrior> = LazyLock::new(ShipPrior::population);
+    Input {
         samples,
         logbook: &[],
         azimuths: &[],
-        prior: &ShipPrior::population(),
+        prior: &PRIOR,
         settings: AnalysisSettings::default(),
-    })
+    }
+}
+
+fn run(samples: &[Sample]) -> Analysis {
+    analyse(&input(samples))
 }
 
 fn ship_changes(analysis: &Analysis) -> Vec<&Change> {
@@ -150,7 +157,8 @@ fn the_model_says_its_grade_and_one_heading_makes_it_another() {
         days: 15.0,
         ..SOUND
     };
-    let mut samples = sail(52, &plan).samples;
+    let voyage = sail(52, &plan);
+    let mut samples = voyage.samples.clone();
     let grade = |analysis: &Analysis| {
         let model = analysis.current_epoch().unwrap().model.clone();
         model.map(|model| model.reference_grade)
@@ -158,12 +166,27 @@ fn the_model_says_its_grade_and_one_heading_makes_it_another() {
     let by_course = run(&samples);
     assert_eq!(grade(&by_course), Some(ReferenceGrade::CourseOverGround));
     assert_eq!(by_course.epochs[0].references, None);
-    for sample in &mut samples[..500] {
-        sample.gyro = TrueHeading::new(sample.compass.degrees());
+    for (sample, by_course) in samples[..500].iter_mut().zip(&by_course.samples) {
+        let compass_deg = sample.compass.degrees();
+        let magnetic_deg = compass_deg + voyage.deviation_deg(compass_deg);
+        sample.gyro = TrueHeading::new(magnetic_deg + by_course.variation_deg.unwrap());
     }
     let by_heading = run(&samples);
     assert_eq!(grade(&by_heading), Some(ReferenceGrade::Heading));
     let later = &by_heading.samples[500..];
     let none = Some(SampleReason::NoReference);
     assert!(later.iter().all(|s| !s.used && s.reason == none));
+}
+
+#[test]
+fn parts_of_a_recording_by_course_predict_each_other() {
+    let voyage = sail(53, &SOUND);
+    let validation = validate(&input(&voyage.samples));
+    assert_eq!(validation.refusal, None);
+    assert_eq!(validation.parts.len(), 4);
+    for part in &validation.parts {
+        let held_out = part.held_out.as_ref().unwrap();
+        let (inside, least) = (held_out.courses_inside, held_out.expected_from);
+        assert!(inside >= least, "{part:?}");
+    }
 }

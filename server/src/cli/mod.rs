@@ -39,6 +39,8 @@ pub enum Command {
     Deviation(Deviation),
     /// Analyse a CSV file as the server analyses a vessel's uploads
     Analyse(Analyse),
+    /// Check on your own recording whether predictions hold
+    Validate(Validate),
     /// Check an archive of evidence of an adjustment
     VerifyEvidence(VerifyEvidence),
     /// Plan the setting of a binnacle's correctors, from a reading at the berth
@@ -215,4 +217,23 @@ pub struct Analyse {
     /// Handling of the gyro's error from the vessel's own speed
     #[arg(long, value_enum, default_value_t)]
     pub gyro_speed_error: GyroSpeedError,
+}
+
+/// Arguments of `validate`.
+///
+/// Says how often a reading was inside the band predicted for it before it was used, and how
+/// well the model of one part of the recording predicts another part.
+#[derive(Debug, Args)]
+pub struct Validate {
+    /// Recording, in the format of `analyse`: settled samples, or rows as often as every second
+    pub file: PathBuf,
+    /// Logbook entries: a JSON array, or a page as the API returns it
+    #[arg(long)]
+    pub logbook: Option<PathBuf>,
+    /// Handling of the gyro's error from the vessel's own speed
+    #[arg(long, value_enum, default_value_t)]
+    pub gyro_speed_error: GyroSpeedError,
+    /// Print JSON instead of text
+    #[arg(long)]
+    pub json: bool,
 }

@@ -1,7 +1,7 @@
 //! `analyse`: analyses a file as the server analyses a vessel's uploads.
 
 use super::{BadInput, input, json, logbook, print_result};
-use crate::cli::Analyse;
+use crate::cli::{Analyse, GyroSpeedError};
 use binnacle_analysis::advice::sail_next;
 use binnacle_analysis::analyse::analyse as run;
 use binnacle_analysis::fit::{CsvRow, Motion, readings_from_csv};
@@ -12,6 +12,7 @@ use binnacle_compass::result::{Analysis, SailNext};
 use binnacle_compass::sample::Sample;
 use binnacle_compass::settings::AnalysisSettings;
 use serde::Serialize;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Printed result.
@@ -31,20 +32,8 @@ pub fn analyse(arguments: &Analyse) -> anyhow::Result<ExitCode> {
 }
 
 fn find(arguments: &Analyse) -> Result<String, BadInput> {
-    let table = input::Table::read(&arguments.file)?;
-    // Input that `fit` refuses is refused here too.
-    readings_from_csv(&table.rows, arguments.gyro_speed_error.into())
-        .map_err(|error| table.error_at(&error))?;
-    let mut samples = Vec::with_capacity(table.rows.len());
-    for (index, row) in table.rows.iter().enumerate() {
-        let sample = sample(row).map_err(|(column, what)| table.invalid(index, column, what))?;
-        let motion = Motion::from_row(row, index).map_err(|error| table.error_at(&error))?;
-        samples.push(motion.put_into(sample));
-    }
-    let logbook: Vec<LogbookEntry> = match &arguments.logbook {
-        Some(path) => logbook::read(path)?,
-        None => Vec::new(),
-    };
+    let samples = read_samples(&arguments.file, arguments.gyro_speed_error)?;
+    let logbook = read_logbook(arguments.logbook.as_deref())?;
     let settings = AnalysisSettings {
         gyro_speed_error: arguments.gyro_speed_error.into(),
         ..AnalysisSettings::default()
@@ -54,6 +43,29 @@ fn find(arguments: &Analyse) -> Result<String, BadInput> {
         sail_next: sail_next(&analysis),
         analysis,
     }))
+}
+
+/// Reads the samples of a table.
+pub(super) fn read_samples(
+    path: &Path,
+    gyro_speed_error: GyroSpeedError,
+) -> Result<Vec<Sample>, BadInput> {
+    let table = input::Table::read(path)?;
+    // Input that `fit` refuses is refused here too.
+    readings_from_csv(&table.rows, gyro_speed_error.into())
+        .map_err(|error| table.error_at(&error))?;
+    let mut samples = Vec::with_capacity(table.rows.len());
+    for (index, row) in table.rows.iter().enumerate() {
+        let sample = sample(row).map_err(|(column, what)| table.invalid(index, column, what))?;
+        let motion = Motion::from_row(row, index).map_err(|error| table.error_at(&error))?;
+        samples.push(motion.put_into(sample));
+    }
+    Ok(samples)
+}
+
+/// Reads a logbook, which is empty without a file.
+pub(super) fn read_logbook(path: Option<&Path>) -> Result<Vec<LogbookEntry>, BadInput> {
+    path.map_or_else(|| Ok(Vec::new()), logbook::read)
 }
 
 /// Returns the sample of a row, or the column at fault and the problem.

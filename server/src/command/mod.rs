@@ -16,6 +16,7 @@ mod operate;
 mod plan;
 mod schedule;
 mod table;
+mod validate;
 mod verify_evidence;
 
 pub use admin::admin;
@@ -27,6 +28,7 @@ pub use fit::fit;
 pub use operate::{migrate, openapi, run, serve};
 pub use plan::plan;
 pub use schedule::schedule;
+pub use validate::validate;
 pub use verify_evidence::verify_evidence;
 
 use serde::Serialize;

@@ -10,6 +10,7 @@ mod migration;
 mod openapi;
 mod plan;
 mod schedule;
+mod validate;
 
 use binnacle_server_testing::program;
 use std::path::Path;

@@ -85,7 +85,7 @@ fn turned_deg(a: &Reading, b: &Reading) -> Option<f64> {
 }
 
 /// Adds the changes by berths that the stays show against the vessel before and after.
-pub(crate) fn add_berth_changes(
+pub fn add_berth_changes(
     stays: &[Range<usize>],
     readings: &[Reading],
     epochs: &[Epoch],

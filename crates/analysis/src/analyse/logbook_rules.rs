@@ -29,7 +29,7 @@ pub(super) fn exclusion_by_kind(kind: LogbookKind) -> Option<SampleReason> {
 }
 
 /// Returns the cause that an entry reports.
-pub(super) fn reported_cause(kind: LogbookKind) -> Option<Cause> {
+pub fn reported_cause(kind: LogbookKind) -> Option<Cause> {
     match kind {
         LogbookKind::Lightning | LogbookKind::Shock => Some(Cause::LightningOrShock),
         LogbookKind::MagneticCargo => Some(Cause::MagneticCargo),

@@ -10,12 +10,12 @@ mod cargo_entries;
 mod changes;
 mod epoch;
 mod epoch_builder;
-mod logbook_rules;
+pub mod logbook_rules;
 mod mixture;
 pub mod reading;
 mod single_heading;
 pub mod steady_course;
-mod stuck_compass;
+pub mod stuck_compass;
 
 use berth_stays::{add_berth_changes, mark_alongside};
 use binnacle_compass::coverage::coverage;
@@ -75,6 +75,7 @@ pub fn analyse(
         data_until: readings.last().map(|r| r.sample().time),
         last_place: readings.iter().rev().find_map(Reading::place),
         coverage,
+        predictions: None,
         epochs,
         changes,
         notices,

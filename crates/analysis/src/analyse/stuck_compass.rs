@@ -39,7 +39,7 @@ const COURSE_READINGS: usize = 3;
 const TURNS_BY_ONE: usize = 4;
 
 /// Marks the readings of a stuck compass, and returns a change for each fault.
-pub(super) fn mark_stuck(readings: &mut [Reading]) -> Vec<Change> {
+pub fn mark_stuck(readings: &mut [Reading]) -> Vec<Change> {
     let mut changes = Vec::new();
     let mut from = 0;
     let mut next_check = 0;

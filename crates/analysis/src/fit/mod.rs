@@ -19,9 +19,11 @@ pub use csv_row::{CsvRow, CsvRowError, Motion, check_columns, readings_from_csv}
 pub use heading_check::check_headings;
 pub use ols::fit_ols;
 pub use paper::fit_paper;
-pub use reference::{HeadingReading, ObservedReadings, observe_readings};
+pub use reference::{HeadingReading, ObservedReadings, compare_references, observe_readings};
+pub use residual_check::check_residuals;
 pub(crate) use robust::fit_roughly;
 pub use robust::{
     REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, fit_known_ship, fit_robust,
 };
 pub use shared_noise::{HeadingPair, check_independence, check_readings_independence};
+pub use time_outliers::long_gap;

@@ -26,7 +26,7 @@ pub(super) fn leave_out_early(observations: &[Observation], usable: &mut Vec<usi
 }
 
 /// Returns a caution for the last long time without a row.
-pub(super) fn long_gap(rows: &[Observation]) -> Option<Caution> {
+pub fn long_gap(rows: &[Observation]) -> Option<Caution> {
     let times = in_order(rows.iter())?;
     let gaps = times.windows(2).map(|pair| pair[1].seconds_since(pair[0]));
     let gap = gaps.rev().find(|&gap| gap > LONG_S)?;

@@ -3,6 +3,7 @@
 use super::change::{Cause, Change};
 use super::diagnostic::SampleDiagnostic;
 use super::noise::NoiseLevels;
+use super::prediction::PredictionCoverage;
 use super::references::ReferenceCheck;
 use super::refusal::FitError;
 use crate::coverage::Coverage;
@@ -33,6 +34,9 @@ pub struct Analysis {
     pub samples: Vec<SampleDiagnostic>,
     /// Headings and magnetic latitudes of the samples with a deviation.
     pub coverage: Coverage,
+    /// Check by the analysis's own predictions; none where the estimator makes none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub predictions: Option<PredictionCoverage>,
     /// Time of the first sample.
     pub data_from: Option<Timestamp>,
     /// Time of the last sample.

@@ -6,6 +6,7 @@ mod change;
 mod diagnostic;
 mod fleet;
 mod noise;
+mod prediction;
 mod references;
 mod refusal;
 
@@ -15,5 +16,6 @@ pub use change::{Cause, CauseProbability, Change, Step};
 pub use diagnostic::{SampleDiagnostic, SampleReason};
 pub use fleet::{FleetDisturbance, weigh_with_fleet};
 pub use noise::{NOISE_LEVELS, NoiseLevels};
+pub use prediction::{PredictionCoverage, expected_inside};
 pub use references::{MAX_FAILURE_THRESHOLD_DEG, ReferenceCheck};
 pub use refusal::FitError;

@@ -86,6 +86,10 @@ struct Ship {
     /// Looks at which there was no model.
     without_model: usize,
     looks: usize,
+    /// Latest watches predicted, those inside the band, and the factor that widened it.
+    watches: u32,
+    watches_inside: u32,
+    widening: f64,
     unstable: Unstable,
     /// Time of the analysis of the whole voyage.
     seconds: f64,
@@ -97,7 +101,7 @@ pub(crate) fn run(arguments: &Arguments) {
         return;
     }
     println!(
-        "\n{:16} {:>5} {:>6} {:>11} {:>11} {:>11} {:>6} {:>6} {:>7} {:>8} {:>9} {:>7} {:>7} {:>6}",
+        "\n{:16} {:>5} {:>6} {:>11} {:>11} {:>11} {:>6} {:>6} {:>7} {:>8} {:>9} {:>7} {:>7} {:>7} {:>5} {:>6}",
         "sound ship",
         "ships",
         "years",
@@ -111,6 +115,8 @@ pub(crate) fn run(arguments: &Arguments) {
         "withdrawn",
         "renamed",
         "redated",
+        "watch %",
+        "wider",
         "s/yr"
     );
     for row in rows {
@@ -151,6 +157,11 @@ fn ship(arguments: &Arguments, row: &Row, seed: u64) -> Ship {
         if let Some(before) = &before {
             ship.unstable.add(before, &analysis);
         }
+        if let Some(predictions) = analysis.predictions {
+            ship.watches = predictions.watches;
+            ship.watches_inside = predictions.watches_inside;
+            ship.widening = predictions.widening;
+        }
         before = Some(analysis);
     }
     let analysis = before.unwrap();
@@ -170,9 +181,12 @@ fn print(row: &Row, ships: &[Ship]) {
         far.merge(ship.far);
     }
     let a_year = |count: fn(&Ship) -> usize, target| at_most(sum(count) as f64 / years, target, 2);
+    let watches: u32 = ships.iter().map(|ship| ship.watches).sum();
+    let inside: u32 = ships.iter().map(|ship| ship.watches_inside).sum();
+    let widening: Vec<f64> = ships.iter().map(|ship| ship.widening).collect();
     let seconds: Vec<f64> = ships.iter().map(|ship| ship.seconds).collect();
     println!(
-        "{:16} {:5} {years:6.1} {:>11} {:>11} {:>11} {:>6} {:>6} {:7.1} {:8} {:9} {:7} {:7} {:6.2}",
+        "{:16} {:5} {years:6.1} {:>11} {:>11} {:>11} {:>6} {:>6} {:7.1} {:8} {:9} {:7} {:7} {:>7} {:5.2} {:6.2}",
         row.name,
         ships.len(),
         a_year(|s| s.reports.ship, row.target),
@@ -185,6 +199,8 @@ fn print(row: &Row, ships: &[Ship]) {
         sum(|s| s.unstable.withdrawn),
         sum(|s| s.unstable.renamed),
         sum(|s| s.unstable.redated),
+        held(100.0 * f64::from(inside) / f64::from(watches)),
+        quantile(&widening, 0.5),
         quantile(&seconds, 0.5),
     );
 }

@@ -19,8 +19,6 @@ use binnacle_compass::time::Timestamp;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// Growth of a drifting ship's (bx, by), nT squared a second: 2 µT in thirty days.
-const DRIFTING_NT2_PER_S: f64 = 2000.0 * 2000.0 / (30.0 * 86_400.0);
 /// Growth of a ramping gyro's error, degrees squared a second: a degree in a day.
 const RAMP_DEG2_PER_S: f64 = 1.0 / 86_400.0;
 /// Memory and standard deviation of a storm's variation, where H is usual.
@@ -301,7 +299,7 @@ impl Hypothesis {
     fn adjust(&self, transition: &mut Transition, row: &Row) {
         for kind in self.lasting() {
             match kind {
-                Kind::ShipDrift => transition.drift(DRIFTING_NT2_PER_S * row.seconds),
+                Kind::ShipDrift => transition.grow(row.seconds / 86_400.0),
                 Kind::GyroRamp => transition.added[GYRO] += RAMP_DEG2_PER_S * row.seconds,
                 Kind::Storm => transition.disturb(row.seconds, STORM_S, STORM_DEG),
                 Kind::Anomaly => transition.pass_anomaly(row.seconds),
@@ -334,7 +332,7 @@ impl Hypothesis {
             event: Arc::new(event),
             probability: 1.0,
         });
-        next.amid = (!kind.row().jumps.is_empty()).then_some(kind);
+        next.amid = kind.is_sudden().then_some(kind);
         next.log_prior += log_prior;
         next
     }
@@ -362,9 +360,8 @@ impl Hypothesis {
         let lasting = lasting.filter(|(_, event)| event.until.is_none());
         let ended = lasting.filter_map(|(i, event)| {
             let probability = match event.kind.row().ending {
-                Ending::Never => return None,
                 Ending::InPort(share) if begin.in_port => share * event.probability,
-                Ending::InPort(_) => return None,
+                Ending::Never | Ending::InPort(_) => return None,
                 ending => ending.probability(event.stay_until(&begin.row), step),
             };
             (probability > 0.0).then(|| self.with_end(i, begin, probability.ln()))
@@ -379,7 +376,7 @@ impl Hypothesis {
         ended.ship_at_end = Some(Box::new(begin.ship.clone()));
         if let Some(before) = ended.before.take() {
             next.filter.restore(&before);
-            next.amid = (!ended.kind.passes_by()).then_some(ended.kind);
+            next.amid = ended.kind.is_sudden().then_some(ended.kind);
         }
         next.log_prior += log_prior;
         next

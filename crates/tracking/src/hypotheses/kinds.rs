@@ -1,7 +1,7 @@
 //! The table of events: how often each kind happens, what it moves, and how it ends.
 
 use crate::state_space::row::Row;
-use crate::state_space::states::{ALIGNMENT, ANOMALY, BX, BY, GYRO, SATELLITE, SETTLING};
+use crate::state_space::states::{ALIGNMENT, ANOMALY, BX, BY, GROWTH, GYRO, SATELLITE, SETTLING};
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 
@@ -113,7 +113,7 @@ pub(crate) struct KindRow {
     pub(crate) kind: Kind,
     /// Events a year at sea.
     pub(crate) a_year: f64,
-    /// Events a port call.
+    /// Events a port call, beside those of its time.
     pub(crate) a_call: f64,
     pub(crate) jumps: &'static [Jump],
     pub(crate) ending: Ending,
@@ -123,8 +123,13 @@ const fn jump(state: usize, sd: f64) -> Jump {
     Jump { state, sd }
 }
 
+/// Growth of a drifting ship's (bx, by) a day, in units of the population: 2 µT in thirty days.
+const GROWTH_SD: f64 = 2000.0 / 1500.0 / 30.0;
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;
+const YEAR_S: f64 = 365.25 * DAY_S;
+/// Usual speed of a ship, knots.
+const USUAL_KN: f64 = 12.0;
 
 /// All kinds.
 pub(crate) const KINDS: [KindRow; 13] = [
@@ -167,7 +172,7 @@ pub(crate) const KINDS: [KindRow; 13] = [
         kind: Kind::ShipDrift,
         a_year: 0.2,
         a_call: 0.0,
-        jumps: &[],
+        jumps: &[jump(GROWTH, GROWTH_SD), jump(GROWTH + 1, GROWTH_SD)],
         ending: Ending::After(40.0 * DAY_S),
     },
     KindRow {
@@ -235,6 +240,20 @@ pub(crate) const KINDS: [KindRow; 13] = [
     },
 ];
 
+impl KindRow {
+    /// Returns the probability that an event began within some seconds, with a port call or
+    /// without, and has not ended since.
+    pub(crate) fn probability(&self, seconds: f64, in_port: bool) -> f64 {
+        let longest_s = match self.ending {
+            Ending::Never | Ending::InPort(_) => f64::INFINITY,
+            Ending::After(mean_s) => mean_s,
+            Ending::AfterMiles(mean_nm) => HOUR_S * mean_nm / USUAL_KN,
+        };
+        let of_time = self.a_year * seconds.min(longest_s) / YEAR_S;
+        of_time + if in_port { self.a_call } else { 0.0 }
+    }
+}
+
 impl Row {
     /// Returns the reading of the instrument that is stuck in such an event.
     pub(crate) fn shown_deg(&self, kind: Kind) -> Option<f64> {
@@ -256,6 +275,11 @@ impl Kind {
     /// Returns true for a disturbance of the earth's own field.
     pub(crate) fn passes_by(self) -> bool {
         matches!(self, Kind::Storm | Kind::Anomaly)
+    }
+
+    /// Returns true for an event that moves something at once.
+    pub(crate) fn is_sudden(self) -> bool {
+        !self.row().jumps.is_empty() && self != Kind::ShipDrift
     }
 
     /// Returns true for an event that moves a reference.
@@ -314,6 +338,7 @@ impl Kind {
             Kind::GyroStep | Kind::GyroRamp => vec![GYRO],
             Kind::SatelliteStep => vec![SATELLITE],
             Kind::Anomaly => vec![ANOMALY, ANOMALY + 1],
+            Kind::ShipDrift => vec![GROWTH, GROWTH + 1],
             _ => Vec::new(),
         }
     }

@@ -34,7 +34,7 @@ const SIZES: [Guess; 2] = [guess(1.0, 0.85), guess(2.5, 0.15)];
 const SPEED_ERRORS: [Guess; 2] = [guess(0.0, 0.85), guess(1.0, 0.15)];
 
 /// Constant drift angle of a usual ship, degrees.
-const CRAB_DEG: f64 = 1.0;
+pub(crate) const CRAB_DEG: f64 = 1.0;
 
 /// Returns the starting hypotheses: each guess with each other, for each component of what is
 /// known of ships like her.

@@ -1,7 +1,20 @@
 //! Analysis of a compass as epochs, models and changes.
 
 mod analysis;
-mod course_use;
-mod detected_changes;
+mod by_course;
+mod cargo_entries;
+mod causes;
+mod changes;
+mod diagnostics;
+mod epochs;
+mod faults;
+mod input;
+mod notices;
+mod overlaps;
+mod predictions;
+mod references;
+mod row_times;
+mod voyage;
 
-pub use analysis::{Input, analyse};
+pub use analysis::analyse;
+pub use input::Input;

@@ -2,7 +2,7 @@
 
 use super::scalar::Scalar;
 use super::states::{STATES, dot};
-use super::transition::{Pair, Transition};
+use super::transition::{Gain, Pair, Transition};
 use binnacle_analysis::estimate::{robust_loss, weight};
 
 /// Mean and covariance of the states, and the log likelihood of what was read.
@@ -59,16 +59,26 @@ impl Filter {
                 *x *= keep * other;
             }
         }
-        for pair in t
-            .schuler
-            .iter()
-            .chain(t.current.iter().flatten())
-            .chain(&t.anomaly)
-        {
+        for pair in t.pairs() {
             self.turn(pair);
+        }
+        for gain in t.gains.iter().flatten() {
+            self.gain(gain);
         }
         for (i, variance) in t.added.iter().enumerate() {
             self.covariance[i][i] += variance;
+        }
+    }
+
+    /// Lets a state gain a share of another.
+    fn gain(&mut self, gain: &Gain) {
+        let Gain { of, by, share } = *gain;
+        self.mean[by] += share * self.mean[of];
+        for row in self.covariance.iter_mut() {
+            row[by] += share * row[of];
+        }
+        for j in 0..STATES {
+            self.covariance[by][j] += share * self.covariance[of][j];
         }
     }
 

@@ -12,7 +12,7 @@ use binnacle_compass::model::Parameters;
 use binnacle_compass::ship::PARAMETERS;
 
 /// Number of states.
-pub(crate) const STATES: usize = 30;
+pub(crate) const STATES: usize = 32;
 
 /// Fore-and-aft permanent field; the other six parameters follow in the order of
 /// [`Parameters`].
@@ -57,6 +57,9 @@ pub(crate) const REFLECTION: usize = 26;
 pub(crate) const LAG: usize = 27;
 /// Local anomaly of the variation and its rate in its memory, degrees.
 pub(crate) const ANOMALY: usize = 28;
+
+/// Growth of the permanent field fore and aft a day; athwartships follows.
+pub(crate) const GROWTH: usize = 30;
 
 /// Constant drift angle of a ship without heading reference, degrees: propeller, rudder, trim.
 pub(crate) const CRAB: usize = REFERENCE;

@@ -3,7 +3,7 @@
 use super::levels::{Level, Levels};
 use super::row::Row;
 use super::states::{
-    ANOMALY, BX, BY, CURRENT, FRICTION, GYRO, GYRO_SLOW, LEEWAY, LIST, LIST_NT, REFLECTION,
+    ANOMALY, BX, BY, CURRENT, FRICTION, GROWTH, GYRO, GYRO_SLOW, LEEWAY, LIST, LIST_NT, REFLECTION,
     SATELLITE, SCHULER, SETTLING, STATES, STEADY, SWING, VARIATION,
 };
 use binnacle_analysis::estimate::{
@@ -16,7 +16,7 @@ const DRIFT_S: f64 = 30.0 * 86_400.0;
 /// Memory of an unmeasured list, seconds.
 const LIST_S: f64 = 2.0 * 86_400.0;
 /// Memory of a gyro that settles, seconds.
-const SETTLING_S: f64 = 5400.0;
+pub(crate) const SETTLING_S: f64 = 5400.0;
 /// Memory of friction on one course, seconds: the sea works the card loose.
 const FRICTION_S: f64 = 6.0 * 3600.0;
 /// Change of course from which the card's friction is another, degrees.
@@ -60,6 +60,16 @@ pub(crate) struct Transition {
     pub(crate) current: Option<[Pair; 2]>,
     /// An anomaly with its rate, while one is passed.
     pub(crate) anomaly: Option<Pair>,
+    /// Shares of states that other states gain.
+    pub(crate) gains: [Option<Gain>; 2],
+}
+
+/// Share of one state that another gains.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gain {
+    pub(crate) of: usize,
+    pub(crate) by: usize,
+    pub(crate) share: f64,
 }
 
 /// Transition of a state and its rate, which follows it.
@@ -79,6 +89,7 @@ impl Transition {
             schuler: None,
             current: None,
             anomaly: None,
+            gains: [None; 2],
         };
         let seconds = row.seconds;
         let turned = row.turned_deg.abs();
@@ -135,6 +146,12 @@ impl Transition {
         }
     }
 
+    /// Returns the transitions of states with their rates.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = &Pair> {
+        let current = self.current.iter().flatten();
+        self.schuler.iter().chain(current).chain(&self.anomaly)
+    }
+
     /// Returns this transition to a row for levels of which one is scaled from those that it
     /// was made for.
     pub(crate) fn with_scaled(
@@ -174,6 +191,17 @@ impl Transition {
     pub(crate) fn disturb(&mut self, seconds: f64, memory_s: f64, sd_deg: f64) {
         self.added[VARIATION] = 0.0;
         self.fade(VARIATION, seconds / memory_s, sd_deg);
+    }
+
+    /// Lets (bx, by) grow steadily for some days.
+    pub(crate) fn grow(&mut self, days: f64) {
+        self.gains = [(GROWTH, BX), (GROWTH + 1, BY)].map(|(of, by)| {
+            Some(Gain {
+                of,
+                by,
+                share: days,
+            })
+        });
     }
 
     /// Adds a random drift of (bx, by), nT squared, with a little of the induced parameters.

@@ -1,15 +1,17 @@
 //! Events that have become certain, and what is detected of them.
 
-use super::records::{Class, Detected};
+use super::records::{Class, Detected, EventPosterior};
 use super::selection::SETTLED_S;
 use super::tracker::Tracker;
 use crate::hypotheses::hypothesis::{Event, Hypothesis, Supposed};
 use crate::hypotheses::kinds::Kind;
 use binnacle_compass::time::Timestamp;
 
-/// Seconds within which two accounts speak of the same event.
+/// Seconds within which two accounts speak of the same event: at most, and at least.
 const SAME_EVENT_S: f64 = 86_400.0;
 const LEAST_WINDOW_S: f64 = 1200.0;
+/// Posterior probability from which an event is suspected.
+const SUSPECTED: f64 = 0.5;
 /// Posterior probability below which a detected event is withdrawn.
 const WITHDRAWN: f64 = 0.3;
 
@@ -19,12 +21,27 @@ struct Marginals<'a> {
     weights: Vec<f64>,
 }
 
-/// Marginal of one event.
-struct Found {
-    probability: f64,
-    kinds: Vec<(Kind, f64)>,
-    earliest: Timestamp,
-    latest: Timestamp,
+/// Event of the lead with its posterior.
+struct Judged<'a> {
+    event: &'a Event,
+    posterior: EventPosterior,
+}
+
+impl Judged<'_> {
+    /// Returns the posterior probability from which the event is detected.
+    fn threshold(&self) -> f64 {
+        Class::of(self.event.kind).threshold()
+    }
+
+    fn detected(self, at: Timestamp) -> Detected {
+        Detected {
+            class: Class::of(self.event.kind),
+            event: self.event.clone(),
+            at,
+            withdrawn: None,
+            posterior: self.posterior,
+        }
+    }
 }
 
 impl<'a> Marginals<'a> {
@@ -55,61 +72,111 @@ impl<'a> Marginals<'a> {
         (nearest[1] / 2.0).clamp(LEAST_WINDOW_S, SAME_EVENT_S)
     }
 
-    /// Returns the lead's event of a class at about a time.
-    fn leads(&self, class: Class, from: Timestamp) -> Option<&'a Event> {
-        nearest(&self.bank[0], class, from, self.window_s(class, from))
+    /// Returns the lead's events that are not among those detected.
+    fn undetected(
+        &'a self,
+        detected: &'a [Detected],
+        now: Timestamp,
+    ) -> impl Iterator<Item = Judged<'a>> {
+        let is_known = move |event: &Event, class: Class| {
+            let window_s = self.window_s(class, event.from);
+            detected.iter().any(|detected| {
+                detected.class == class
+                    && detected.withdrawn.is_none()
+                    && detected.event.from.seconds_since(event.from).abs() <= window_s
+            })
+        };
+        let likely = self.bank[0].events.iter().filter(|e| e.probability > 0.5);
+        let events = likely.map(|supposed| supposed.event.as_ref());
+        let judged = events.filter(move |event| now.seconds_since(event.from) <= SETTLED_S);
+        judged.filter_map(move |event| {
+            let class = Class::of(event.kind);
+            (!is_known(event, class)).then(|| Judged {
+                event,
+                posterior: self.event(class, event.from),
+            })
+        })
     }
 
-    /// Returns the marginal of an event of a class at about a time.
-    fn event(&self, class: Class, from: Timestamp) -> Found {
-        let mut found = Found {
+    /// Returns the lead's event of a class at about a time.
+    fn leads(&self, class: Class, from: Timestamp) -> Option<&'a Event> {
+        let is_meant = |other| other == class;
+        nearest(&self.bank[0], is_meant, from, self.window_s(class, from))
+    }
+
+    /// Returns the posterior of an event of a class at about a time.
+    fn event(&self, class: Class, from: Timestamp) -> EventPosterior {
+        let mut found = EventPosterior {
             probability: 0.0,
             kinds: Vec::new(),
+            instead: Vec::new(),
+            in_port: 0.0,
+            is_over: 0.0,
+            end: None,
             earliest: from,
             latest: from,
         };
         let within_s = self.window_s(class, from);
+        let mut likeliest_end = 0.0;
         for (hypothesis, weight) in self.bank.iter().zip(&self.weights) {
             let mut sum = 0.0;
-            for event in within(hypothesis, class, from, within_s) {
+            for event in within(hypothesis, |other| other == class, from, within_s) {
                 let weight = weight * event.probability;
                 sum += weight;
-                match found.kinds.iter_mut().find(|(kind, _)| *kind == event.kind) {
-                    Some((_, sum)) => *sum += weight,
-                    None => found.kinds.push((event.kind, weight)),
+                add(&mut found.kinds, event.kind, weight);
+                found.in_port += weight * f64::from(u8::from(event.in_port));
+                if let Some(end) = event.until {
+                    found.is_over += weight;
+                    if weight > likeliest_end {
+                        (likeliest_end, found.end) = (weight, Some(end));
+                    }
                 }
                 if weight > 0.02 {
                     found.earliest = found.earliest.min(event.from);
                     found.latest = found.latest.max(event.from);
                 }
             }
+            let other = nearest(hypothesis, |other| other != class, from, within_s);
+            if let Some(other) = other.filter(|_| sum < *weight) {
+                add(&mut found.instead, other.kind, weight - sum);
+            }
             found.probability += sum.min(*weight);
         }
-        found.kinds.sort_by(|a, b| b.1.total_cmp(&a.1));
+        for kinds in [&mut found.kinds, &mut found.instead] {
+            kinds.sort_by(|a, b| b.1.total_cmp(&a.1));
+        }
         found
     }
 }
 
-/// Returns a hypothesis's events of a class within some seconds of a time.
+/// Adds to the probability of a kind.
+fn add(kinds: &mut Vec<(Kind, f64)>, kind: Kind, probability: f64) {
+    match kinds.iter_mut().find(|(known, _)| *known == kind) {
+        Some((_, sum)) => *sum += probability,
+        None => kinds.push((kind, probability)),
+    }
+}
+
+/// Returns a hypothesis's events of some classes within some seconds of a time.
 fn within(
     hypothesis: &Hypothesis,
-    class: Class,
+    is_meant: impl Fn(Class) -> bool,
     from: Timestamp,
     within_s: f64,
 ) -> impl Iterator<Item = &Supposed> {
     hypothesis.events.iter().filter(move |event| {
-        Class::of(event.kind) == class && event.from.seconds_since(from).abs() <= within_s
+        is_meant(Class::of(event.kind)) && event.from.seconds_since(from).abs() <= within_s
     })
 }
 
-/// Returns a hypothesis's event of a class nearest to a time, within some seconds.
+/// Returns a hypothesis's likely event of some classes nearest to a time, within some seconds.
 fn nearest(
     hypothesis: &Hypothesis,
-    class: Class,
+    is_meant: impl Fn(Class) -> bool,
     from: Timestamp,
     within_s: f64,
 ) -> Option<&Event> {
-    let likely = within(hypothesis, class, from, within_s).filter(|e| e.probability > 0.5);
+    let likely = within(hypothesis, is_meant, from, within_s).filter(|e| e.probability > 0.5);
     let apart = |e: &Event| e.from.seconds_since(from).abs();
     let events = likely.map(|supposed| supposed.event.as_ref());
     events.min_by(|a: &&Event, b| apart(a).total_cmp(&apart(b)))
@@ -134,37 +201,30 @@ impl Tracker {
                 detected.event.ship_at_end.clone_from(&event.ship_at_end);
                 if is_open {
                     detected.event = event.clone();
-                    detected.kinds = found.kinds;
-                    detected.earliest = found.earliest;
-                    detected.latest = found.latest;
+                    detected.posterior = found;
+                } else {
+                    (detected.posterior.is_over, detected.posterior.end) =
+                        (found.is_over, found.end);
                 }
             }
         }
-        let mut more = Vec::new();
-        for event in self.bank[0].events.iter().filter(|e| e.probability > 0.5) {
-            let class = Class::of(event.kind);
-            let is_detected = |detected: &Detected| {
-                detected.class == class
-                    && detected.withdrawn.is_none()
-                    && detected.event.from.seconds_since(event.from).abs()
-                        <= marginals.window_s(class, event.from)
-            };
-            if self.detected.iter().any(is_detected) || now.seconds_since(event.from) > SETTLED_S {
-                continue;
-            }
-            let found = marginals.event(class, event.from);
-            if found.probability > class.threshold() {
-                more.push(Detected {
-                    class,
-                    event: Event::clone(event),
-                    at: now,
-                    withdrawn: None,
-                    kinds: found.kinds,
-                    earliest: found.earliest,
-                    latest: found.latest,
-                });
-            }
-        }
+        let more: Vec<Detected> = marginals
+            .undetected(&self.detected, now)
+            .filter(|judged| judged.posterior.probability > judged.threshold())
+            .map(|judged| judged.detected(now))
+            .collect();
         self.detected.extend(more);
+    }
+
+    /// Returns the events that are likelier than not but not certain, after the last row.
+    pub(crate) fn suspected(&self) -> Vec<Detected> {
+        let Some(last) = self.rows.back() else {
+            return Vec::new();
+        };
+        Marginals::new(&self.bank)
+            .undetected(&self.detected, last.time)
+            .filter(|judged| judged.posterior.probability > SUSPECTED)
+            .map(|judged| judged.detected(last.time))
+            .collect()
     }
 }

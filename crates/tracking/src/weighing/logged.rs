@@ -6,7 +6,7 @@ use crate::hypotheses::kinds::{KINDS, Kind};
 use binnacle_compass::logbook::LogbookKind;
 
 /// Probability that a ship is as before once the logbook says that her cargo is ashore.
-const DISCHARGED: f64 = 0.7;
+const DISCHARGED: f64 = 0.9;
 
 impl Tracker {
     /// Takes note of a logbook entry since the last row.
@@ -54,12 +54,15 @@ impl Tracker {
             in_port: true,
         };
         let mut more = Vec::new();
-        for hypothesis in &self.bank {
+        for hypothesis in &mut self.bank {
             let lasting = hypothesis
                 .events
                 .iter()
                 .rposition(|e| e.kind == Kind::Cargo && e.until.is_none());
-            more.extend(lasting.map(|event| hypothesis.with_end(event, &begin, DISCHARGED.ln())));
+            if let Some(event) = lasting {
+                more.push(hypothesis.with_end(event, &begin, DISCHARGED.ln()));
+                hypothesis.log_prior += (1.0 - DISCHARGED).ln();
+            }
         }
         self.bank.extend(more);
     }

@@ -20,7 +20,8 @@ const STOOD_DEG: f64 = 2.0;
 const TURNED_DEG: f64 = 10.0;
 /// Greatest change of a drift angle, degrees.
 const DRIFT_ANGLE_DEG: f64 = 30.0;
-const YEAR_S: f64 = 365.25 * 86_400.0;
+/// Least time between checkpoints for which an event's prior counts, seconds.
+const LEAST_EXPOSURE_S: f64 = 300.0;
 
 /// Log likelihood ratio from which a jump is worth a look, and a slow growth.
 const JUMP_SEEN: f64 = 3.0;
@@ -196,12 +197,8 @@ impl Tracker {
         }
         let next = self.checkpoints.get(place + 1);
         let next = next.map_or(self.rows.back()?.time, |next| next.time);
-        let exposure_s = next.seconds_since(checkpoint.time).clamp(300.0, 7200.0);
-        let probability = if checkpoint.begin.in_port {
-            kind.a_call
-        } else {
-            kind.a_year * exposure_s / YEAR_S
-        };
+        let seconds = next.seconds_since(checkpoint.time).max(LEAST_EXPOSURE_S);
+        let probability = kind.probability(seconds, checkpoint.begin.in_port);
         (probability > 0.0).then(|| probability.ln())
     }
 

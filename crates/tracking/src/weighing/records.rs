@@ -38,7 +38,7 @@ pub(crate) enum Class {
 
 impl Class {
     /// Returns the subject of a kind of event.
-    pub(super) fn of(kind: Kind) -> Class {
+    pub(crate) fn of(kind: Kind) -> Class {
         match kind {
             Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift => Class::Ship,
             Kind::Storm | Kind::Anomaly => Class::Passing,
@@ -76,8 +76,24 @@ pub(crate) struct Detected {
     /// Row that made it certain.
     pub(crate) at: Timestamp,
     pub(crate) withdrawn: Option<Timestamp>,
-    /// Probability of each kind, the likeliest first.
+    /// Posterior of the event when it was last judged.
+    pub(crate) posterior: EventPosterior,
+}
+
+/// Posterior of one event of a class, by all hypotheses.
+#[derive(Clone, Debug)]
+pub(crate) struct EventPosterior {
+    /// Probability that such an event happened.
+    pub(crate) probability: f64,
+    /// Probability of each kind of the class, the likeliest first.
     pub(crate) kinds: Vec<(Kind, f64)>,
+    /// Probability of each kind of another class in its place, the likeliest first.
+    pub(crate) instead: Vec<(Kind, f64)>,
+    /// Probability that it happened in port.
+    pub(crate) in_port: f64,
+    /// Probability that it is over, and the likeliest end.
+    pub(crate) is_over: f64,
+    pub(crate) end: Option<Timestamp>,
     pub(crate) earliest: Timestamp,
     pub(crate) latest: Timestamp,
 }

@@ -57,6 +57,9 @@ pub(crate) struct Tracker {
 /// Row as the lead predicted and read it.
 pub(crate) struct Tracked {
     pub(crate) read: Read,
+    /// True if the ship was in port since the row before.
+    pub(crate) after_port: bool,
+    pub(crate) row: Row,
 }
 
 impl Tracker {
@@ -225,7 +228,11 @@ impl Tracker {
         let learns = self.is_settled();
         self.learning.read(row, &usual, gained, learns);
         self.sums.add(row, &read);
-        Tracked { read }
+        Tracked {
+            read,
+            after_port: row.after_port,
+            row: row.clone(),
+        }
     }
 
     /// Returns true while the lead is alone in what it supposes.

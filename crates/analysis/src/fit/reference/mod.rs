@@ -16,7 +16,7 @@ mod reading;
 mod reference_drift;
 mod stuck_reference;
 
-pub use observe_readings::{ObservedReadings, observe_readings};
+pub use observe_readings::{ObservedReadings, compare_references, observe_readings};
 pub use reading::HeadingReading;
 
 #[cfg(test)]

@@ -30,6 +30,53 @@ pub fn observe_readings(
     readings: &[HeadingReading],
     one_constant_sd_deg: f64,
 ) -> Result<ObservedReadings, FitError> {
+    let mut compared = compare_all(readings, one_constant_sd_deg)?;
+    let Compared {
+        order,
+        trust,
+        check,
+        stretches,
+    } = &mut compared;
+    majority_vote::vote_on_stretches(readings, order, check, stretches, trust);
+    majority_vote::vote_on_failures(readings, order, check, trust);
+    check::count_dropped(check, readings, trust);
+    let observations = readings
+        .iter()
+        .zip(trust.iter())
+        .map(|(reading, trust)| observe(reading, *trust, check))
+        .collect();
+    Ok(ObservedReadings {
+        observations,
+        check: *check,
+    })
+}
+
+/// Compares the references of readings in any order, without a verdict on which one failed.
+///
+/// # Errors
+/// Those of [`observe_readings`].
+pub fn compare_references(
+    readings: &[HeadingReading],
+    one_constant_sd_deg: f64,
+) -> Result<ReferenceCheck, FitError> {
+    Ok(compare_all(readings, one_constant_sd_deg)?.check)
+}
+
+/// Comparison of the references of all readings.
+struct Compared {
+    /// Places of the readings in order of time.
+    order: Vec<usize>,
+    /// Trust in the references of each reading: a stuck one has none.
+    trust: Vec<Trust>,
+    check: ReferenceCheck,
+    /// Readings of each stretch of days with another difference.
+    stretches: Vec<Vec<usize>>,
+}
+
+fn compare_all(
+    readings: &[HeadingReading],
+    one_constant_sd_deg: f64,
+) -> Result<Compared, FitError> {
     if !readings.is_empty() && !readings.iter().any(HeadingReading::has_reference) {
         return Err(FitError::NoReference {
             readings: readings.len() as u64,
@@ -37,7 +84,7 @@ pub fn observe_readings(
     }
     let mut order: Vec<usize> = (0..readings.len()).collect();
     order.sort_by_key(|&i| readings[i].time);
-    let mut trust = stuck_reference::trust(readings, &order);
+    let trust = stuck_reference::trust(readings, &order);
     let stuck = readings
         .iter()
         .zip(&trust)
@@ -48,7 +95,7 @@ pub fn observe_readings(
             readings: stuck as u64,
         });
     }
-    let (mut check, stretches) = compare(readings, &order, &trust, one_constant_sd_deg);
+    let (check, stretches) = compare(readings, &order, &trust, one_constant_sd_deg);
     if let Some(offset_deg) = check.offset_deg
         && offset_deg.abs() > LASTING_LIMIT_DEG
     {
@@ -57,17 +104,11 @@ pub fn observe_readings(
             allowed_deg: LASTING_LIMIT_DEG,
         });
     }
-    majority_vote::vote_on_stretches(readings, &order, &check, &stretches, &mut trust);
-    majority_vote::vote_on_failures(readings, &order, &check, &mut trust);
-    check::count_dropped(&mut check, readings, &trust);
-    let observations = readings
-        .iter()
-        .zip(&trust)
-        .map(|(reading, trust)| observe(reading, *trust, &check))
-        .collect();
-    Ok(ObservedReadings {
-        observations,
+    Ok(Compared {
+        order,
+        trust,
         check,
+        stretches,
     })
 }
 
