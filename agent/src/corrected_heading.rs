@@ -170,7 +170,7 @@ fn field_at(inputs: CorrectionInputs<'_>) -> Result<(EarthField, Variation), Str
 pub(crate) mod tests {
     use super::*;
     use crate::alert::AlertRecord;
-    use binnacle_compass::model::{Model, Parameters};
+    use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
     use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 
     pub(crate) fn model(bx_nt: f64, constant_variance: Option<f64>) -> ModelDownlink {
@@ -201,6 +201,7 @@ pub(crate) mod tests {
                 samples_used: 0,
                 samples_rejected: 0,
                 quality: None,
+                reference_grade: ReferenceGrade::Heading,
             },
         }
     }

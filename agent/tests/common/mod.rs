@@ -6,7 +6,7 @@ pub(crate) mod agent;
 pub(crate) mod bridge;
 pub(crate) mod server;
 
-use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::ModelDownlink;
 use uuid::Uuid;
@@ -37,6 +37,7 @@ pub(crate) fn model() -> ModelDownlink {
             samples_used: 1,
             samples_rejected: 0,
             quality: None,
+            reference_grade: ReferenceGrade::Heading,
         },
     }
 }

@@ -8,7 +8,7 @@ use binnacle_adjustment::berth::{
     permanent_at_berth,
 };
 use binnacle_compass::angle::MagneticHeading;
-use binnacle_compass::model::{Covariance, Model, Parameters};
+use binnacle_compass::model::{Covariance, Model, Parameters, ReferenceGrade};
 use binnacle_compass::ship::{EarthField, ShipMagnetism};
 use nalgebra::SMatrix;
 use rand::{RngExt, SeedableRng};
@@ -29,6 +29,7 @@ fn model(array: [f64; 7], constant_deg: f64, covariance: Option<&Covariance>) ->
         samples_used: 0,
         samples_rejected: 0,
         quality: None,
+        reference_grade: ReferenceGrade::Heading,
     }
 }
 

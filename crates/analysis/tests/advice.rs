@@ -10,7 +10,7 @@ use binnacle_analysis::advice::{AdviceError, NOTICEABLE_DEG, Question, advise};
 use binnacle_analysis::fit::{Observation, RobustFit, RobustOptions, fit_robust};
 use binnacle_compass::angle::{CompassHeading, Deviation};
 use binnacle_compass::coverage::{Coverage, coverage};
-use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::position::Position;
 use binnacle_compass::result::{Band, HeadingRange, NoiseLevels, SailNext};
 use binnacle_compass::ship::EarthField;
@@ -29,6 +29,7 @@ const USUAL: NoiseLevels = NoiseLevels {
     turn_deg: 0.3,
     satellite_deg: 0.2,
     difference_deg: 0.2,
+    drift_angle_deg: 0.0,
 };
 const BISCAY: EarthField = EarthField {
     h_nt: 24_000.0,
@@ -71,6 +72,7 @@ fn known_ship(rng: &mut ChaCha8Rng, rows: u32, earth: EarthField) -> Model {
         samples_used: 0,
         samples_rejected: 0,
         quality: None,
+        reference_grade: ReferenceGrade::Heading,
     }
 }
 

@@ -31,6 +31,18 @@ export function refusalWords(refusal: Refusal): RefusalWords | null {
       };
     case 'no_reference':
       return { missing: t().noReference(count(refusal.readings)), todo: t().noReferenceTodo };
+    case 'no_steady_course':
+      return {
+        missing: t().noSteadyCourse(
+          count(refusal.readings),
+          count(refusal.found),
+          count(refusal.needed),
+          count(refusal.too_slow),
+          count(refusal.least_sog_kn),
+          count(refusal.turning),
+        ),
+        todo: t().noSteadyCourseTodo,
+      };
     case 'no_weight':
       return { missing: t().noWeight(count(refusal.samples)), todo: t().noWeightTodo };
     case 'too_few_headings':

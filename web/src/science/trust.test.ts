@@ -179,6 +179,11 @@ describe('in words', () => {
       { reason: 'reference_is_compass', samples: 400, scatter_deg: 0.03, least_deg: 0.082 },
       { reason: 'few_samples_used', used: 12, found: 400 },
       { reason: 'model_does_not_explain', residual_deg: 9.66, allowed_deg: 5 },
+      {
+        reason: 'no_steady_course',
+        ...{ readings: 1_440, found: 3, needed: 12 },
+        ...{ too_slow: 1_400, turning: 37, least_sog_kn: 4 },
+      },
     ];
     const found = refusals.map((refusal) => refusalWords(refusal));
     expect(new Set(found.map((words) => words?.todo)).size).toBe(refusals.length);
@@ -193,6 +198,7 @@ describe('in words', () => {
     expect(found[11]?.missing).toContain('scatters by only 0.03°');
     expect(found[12]?.missing).toContain('Only 12 of 400 samples');
     expect(found[13]?.missing).toContain('misses its own samples by 9.7°');
+    expect(plain(found[14]?.missing)).toContain('below 4 knots, 37 in a turn');
     expect(refusalWords({ reason: 'moonlight' } as unknown as Refusal)).toBeNull();
   });
 });

@@ -79,6 +79,17 @@ export const refusal = {
     `None of the ${readings} samples has a heading by gyro or satellite compass to hold the compass against.`,
   noReferenceTodo:
     'Check on board that a gyro or satellite compass is connected, and which sentence is taken for it.',
+  noSteadyCourse: (
+    readings: string,
+    found: string,
+    needed: string,
+    tooSlow: string,
+    least: string,
+    turning: string,
+  ) =>
+    `No sample has a heading by gyro or satellite compass. The course over ground shows the heading in ${found} of ${readings} samples; at least ${needed} are needed. ${tooSlow} are below ${least} knots, ${turning} in a turn or just after one.`,
+  noSteadyCourseTodo:
+    'Steer straight courses under way on different headings, or connect a gyro or satellite compass.',
   noWeight: (samples: string) => `The weight is 0 in all of ${samples} samples.`,
   noWeightTodo: 'Give the rows that are to count a weight above 0.',
   contradictory: (residual: string, allowed: string) =>

@@ -1,7 +1,7 @@
 use super::*;
 use crate::test_support::{random_earth, random_ship};
 use binnacle_compass::angle::{MagneticHeading, TrueHeading, Variation};
-use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::ship::{EarthField, ShipMagnetism};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -47,6 +47,7 @@ fn model_of(ship: &ShipMagnetism) -> Model {
         samples_used: 0,
         samples_rejected: 0,
         quality: None,
+        reference_grade: ReferenceGrade::Heading,
     }
 }
 

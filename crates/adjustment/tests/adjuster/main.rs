@@ -14,7 +14,7 @@ use binnacle_adjustment::adjust::{
 use binnacle_adjustment::berth::{Alignment, BerthReading, ReadingErrors};
 use binnacle_adjustment::binnacle::{Binnacle, SHIPPED};
 use binnacle_compass::angle::MagneticHeading;
-use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::ship::EarthField;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -164,6 +164,7 @@ impl Case {
             samples_used: 100,
             samples_rejected: 0,
             quality: None,
+            reference_grade: ReferenceGrade::Heading,
         }
     }
 

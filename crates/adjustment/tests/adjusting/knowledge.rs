@@ -5,7 +5,7 @@ use super::{Place, Standing};
 use binnacle_adjustment::adjust::Water;
 use binnacle_adjustment::berth::{Alignment, BerthReading, ReadingErrors};
 use binnacle_compass::angle::MagneticHeading;
-use binnacle_compass::model::{Identifiable, Model, Parameters};
+use binnacle_compass::model::{Identifiable, Model, Parameters, ReferenceGrade};
 use nalgebra::{SMatrix, SVector};
 
 /// Errors of the ship's instruments.
@@ -145,6 +145,7 @@ pub(crate) fn exactly(truth: &Standing, waters: &[Water]) -> Model {
         samples_used: 1000,
         samples_rejected: 0,
         quality: None,
+        reference_grade: ReferenceGrade::Heading,
     }
 }
 

@@ -154,6 +154,7 @@ mod tests {
             drift_nt: 60.0,
             satellite_deg: 0.2,
             difference_deg: 0.2,
+            drift_angle_deg: 0.0,
         };
         let earth = EarthField {
             h_nt: 20_000.0,

@@ -14,11 +14,13 @@ pub mod logbook_rules;
 mod mixture;
 pub mod reading;
 mod single_heading;
+pub mod steady_course;
 pub mod stuck_compass;
 
 use berth_stays::{add_berth_changes, mark_alongside};
 use binnacle_compass::coverage::coverage;
 use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::result::{Analysis, ESTIMATOR, Epoch};
 use binnacle_compass::sample::Sample;
 use binnacle_compass::settings::AnalysisSettings;
@@ -40,7 +42,7 @@ pub fn analyse(
     logbook: &[LogbookEntry],
     settings: &AnalysisSettings,
 ) -> Analysis {
-    let mut readings = readings(samples, logbook, settings);
+    let mut readings = readings(samples, logbook, settings, ReferenceGrade::Heading);
     let mut builder = EpochBuilder::after(mark_stuck(&mut readings));
     let stays = mark_alongside(&mut readings);
     let mut corrected_start = None;

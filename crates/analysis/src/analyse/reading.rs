@@ -6,6 +6,7 @@ use crate::gyro_speed_error::gyro_speed_error_deg;
 use binnacle_compass::angle::{CourseOverGround, TrueHeading, Variation};
 use binnacle_compass::field::{FieldAt, FieldModel};
 use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::result::{LastPlace, SampleDiagnostic, SampleReason};
 use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_compass::settings::{AnalysisSettings, GyroSpeedError};
@@ -48,11 +49,12 @@ impl Reading {
 }
 
 /// Returns the distinct samples in order of time, with the field and the reasons against
-/// their use that need no fit.
+/// their use that need no fit, for a reference of some grade.
 pub fn readings(
     samples: &[Sample],
     logbook: &[LogbookEntry],
     settings: &AnalysisSettings,
+    grade: ReferenceGrade,
 ) -> Vec<Reading> {
     let mut sorted = samples.to_vec();
     sorted.sort_by(in_order);
@@ -68,7 +70,7 @@ pub fn readings(
     sorted
         .into_iter()
         .map(|sample| {
-            let mut reading = reading(sample, &mut field, settings);
+            let mut reading = reading(sample, &mut field, settings, grade);
             // The first reason in their order, whatever the order of the entries.
             let reported = excluding
                 .iter()
@@ -80,12 +82,17 @@ pub fn readings(
         .collect()
 }
 
-fn reading(sample: Sample, field: &mut DailyField, settings: &AnalysisSettings) -> Reading {
+fn reading(
+    sample: Sample,
+    field: &mut DailyField,
+    settings: &AnalysisSettings,
+    grade: ReferenceGrade,
+) -> Reading {
     let found = field.at(&sample);
     let variation = found.map(|f| f.declination());
     let earth = found.map(|f| f.for_ship());
     let reason = match earth {
-        _ if sample.gyro.is_none() && sample.satellite.is_none() => Some(SampleReason::NoReference),
+        _ if !has_reference(&sample, grade) => Some(SampleReason::NoReference),
         None => Some(SampleReason::OutsideFieldModel),
         Some(earth) if earth.h_nt < WEAKEST_H_NT => Some(SampleReason::FieldTooWeak),
         Some(_) => None,
@@ -106,6 +113,13 @@ fn reading(sample: Sample, field: &mut DailyField, settings: &AnalysisSettings) 
             used: false,
             reason,
         },
+    }
+}
+
+fn has_reference(sample: &Sample, grade: ReferenceGrade) -> bool {
+    match grade {
+        ReferenceGrade::Heading => sample.gyro.or(sample.satellite).is_some(),
+        ReferenceGrade::CourseOverGround => sample.cog.is_some() && sample.sog_kn.is_some(),
     }
 }
 

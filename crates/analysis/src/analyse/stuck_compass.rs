@@ -304,6 +304,7 @@ fn stuck_change(readings: &[Reading], found: &Stuck) -> Change {
 mod tests {
     use super::*;
     use crate::analyse::reading::readings;
+    use binnacle_compass::model::ReferenceGrade;
     use binnacle_compass::settings::AnalysisSettings;
     use binnacle_compass::time::Timestamp;
 
@@ -321,7 +322,12 @@ mod tests {
             serde_json::from_value(sample).unwrap()
         };
         let samples: Vec<Sample> = each.enumerate().map(sample).collect();
-        readings(&samples, &[], &AnalysisSettings::default())
+        readings(
+            &samples,
+            &[],
+            &AnalysisSettings::default(),
+            ReferenceGrade::Heading,
+        )
     }
 
     #[test]

@@ -13,7 +13,7 @@ use super::robust::{check_field, is_usable};
 use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::linearised_at_compass;
-use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::result::FitError;
 use binnacle_compass::ship::{EarthField, PARAMETERS};
 
@@ -65,6 +65,7 @@ pub fn fit_ols(observations: &[Observation]) -> Result<Model, FitError> {
         samples_used: found,
         samples_rejected: observations.len() as u64 - found,
         quality: None,
+        reference_grade: ReferenceGrade::Heading,
     };
     Ok(as_mounted(straight, turn))
 }

@@ -41,23 +41,25 @@ pub fn check_residuals(
         return Ok(None);
     };
     let noise_deg = levels.row_variance().sqrt();
+    // The limits are those of headings: a course over ground drifts beside.
+    let limit = |heading_deg: f64| heading_deg.hypot(levels.drift_angle_deg);
     // The spread is about the median: a reference that was wrong for days moves the constant
     // away from all the rest, which is still plausible.
-    if spread_deg > ALLOWED_DEG && noise_deg > ALLOWED_NOISE_DEG {
+    if spread_deg > limit(ALLOWED_DEG) && noise_deg > limit(ALLOWED_NOISE_DEG) {
         return Err(FitError::Contradictory {
             residual_deg: spread_deg,
-            allowed_deg: ALLOWED_DEG,
+            allowed_deg: limit(ALLOWED_DEG),
         });
     }
     check_used(samples_used, residuals.len() as u64)?;
-    if residual_deg > UNUSABLE_DEG {
+    if residual_deg > limit(UNUSABLE_DEG) {
         return Err(FitError::ModelDoesNotExplain {
             residual_deg,
-            allowed_deg: UNUSABLE_DEG,
+            allowed_deg: limit(UNUSABLE_DEG),
         });
     }
-    let is_large =
-        residual_deg > ALLOWED_DEG || (residual_deg > CAUTION_DEG && noise_deg > CAUTION_DEG);
+    let is_large = residual_deg > limit(ALLOWED_DEG)
+        || (residual_deg > limit(CAUTION_DEG) && noise_deg > limit(CAUTION_DEG));
     Ok(is_large.then_some(Caution::LargeResiduals { residual_deg }))
 }
 
@@ -107,5 +109,19 @@ mod tests {
             matches!(beside, Ok(Some(Caution::LargeResiduals { .. }))),
             "{beside:?}"
         );
+    }
+
+    #[test]
+    fn residuals_that_a_drift_angle_explains_are_no_contradiction() {
+        let check = |drift_angle_deg: f64| {
+            let levels = NoiseLevels {
+                drift_angle_deg,
+                ..NoiseLevels::TYPICAL
+            };
+            let residuals = (0..=100).map(|row| 0.16 * f64::from(row - 50));
+            check_residuals(residuals, &levels, 101)
+        };
+        assert_eq!(check(6.0), Ok(None));
+        assert!(check(0.0).is_err());
     }
 }

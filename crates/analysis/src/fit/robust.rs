@@ -6,7 +6,7 @@ use super::{residual_check, time_outliers};
 use crate::estimate::{Options, Prior, RoughEstimate, Turn, estimate, estimate_roughly};
 use crate::observation::Observation;
 use binnacle_compass::deviation::Coefficients;
-use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::result::{FitError, NoiseLevels};
 use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
 use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
@@ -183,6 +183,7 @@ fn fit_usable(
         samples_used,
         samples_rejected: observations.len() as u64 - samples_used,
         quality: Some(quality),
+        reference_grade: ReferenceGrade::Heading,
     };
     Ok(RobustFit {
         model,

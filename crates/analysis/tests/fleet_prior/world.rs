@@ -4,7 +4,7 @@
 //! The deviation is the five-term approximation, linear in the seven ratios; errors are
 //! normal and independent. Fields are in µT here, and in nT at the edge to the product.
 
-use binnacle_compass::model::{Covariance, Model, Parameters};
+use binnacle_compass::model::{Covariance, Model, Parameters, ReferenceGrade};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -111,6 +111,7 @@ impl Normal {
             samples_used: 0,
             samples_rejected: 0,
             quality: None,
+            reference_grade: ReferenceGrade::Heading,
         }
     }
 }

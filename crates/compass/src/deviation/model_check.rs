@@ -139,7 +139,7 @@ fn scales(covariance: &Covariance) -> Result<[f64; 8], ModelError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Parameters;
+    use crate::model::{Parameters, ReferenceGrade};
 
     fn model(covariance: Option<&Covariance>) -> Model {
         Model {
@@ -153,6 +153,7 @@ mod tests {
             samples_used: 100,
             samples_rejected: 3,
             quality: None,
+            reference_grade: ReferenceGrade::Heading,
         }
     }
 

@@ -127,7 +127,7 @@ fn standard_error_deg(
 mod tests {
     use super::*;
     use crate::angle::wrap_180;
-    use crate::model::Parameters;
+    use crate::model::{Parameters, ReferenceGrade};
     use crate::ship::test_support::{random_earth, random_ship};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -155,6 +155,7 @@ mod tests {
             samples_used: 0,
             samples_rejected: 0,
             quality: None,
+            reference_grade: ReferenceGrade::Heading,
         }
     }
 

@@ -6,7 +6,7 @@
 //! its other fields may have another meaning. A changed meaning takes the next number; a
 //! new optional field does not.
 
-use super::{Covariance, Identifiable, Model, Parameters, Quality};
+use super::{Covariance, Identifiable, Model, Parameters, Quality, ReferenceGrade};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -52,6 +52,9 @@ pub(super) struct Form {
     /// Evidence behind the model; absent in a model stored without.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     quality: Option<Quality>,
+    /// Source of the true headings behind the model: gyro or satellite compass where absent.
+    #[serde(default, skip_serializing_if = "ReferenceGrade::is_heading")]
+    reference_grade: ReferenceGrade,
 }
 
 fn version() -> u32 {
@@ -80,6 +83,7 @@ impl From<Form> for Model {
             samples_used: form.samples_used,
             samples_rejected: form.samples_rejected,
             quality: form.quality,
+            reference_grade: form.reference_grade,
         }
     }
 }
@@ -96,6 +100,7 @@ impl From<Model> for Form {
             samples_used: model.samples_used,
             samples_rejected: model.samples_rejected,
             quality: model.quality,
+            reference_grade: model.reference_grade,
         }
     }
 }

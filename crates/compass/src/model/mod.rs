@@ -1,6 +1,9 @@
 //! A vessel's fitted magnetic model, as stored and sent on board.
 
 mod json;
+mod reference_grade;
+
+pub use reference_grade::ReferenceGrade;
 
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -178,4 +181,6 @@ pub struct Model {
     pub samples_rejected: u64,
     /// Evidence behind the model; none for a model without it.
     pub quality: Option<Quality>,
+    /// Source of the true headings behind the model.
+    pub reference_grade: ReferenceGrade,
 }

@@ -65,4 +65,10 @@ pub enum SampleReason {
     Outlier,
     /// Its epoch has no model.
     NoModel,
+    /// No gyro or satellite compass, and too slow for the course over ground to show the
+    /// heading: the ship drifts, or nearly.
+    TooSlowForCourse,
+    /// No gyro or satellite compass, and in a turn or just after one, where the course over
+    /// ground does not show the heading.
+    TurningCourse,
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Number of values in [`NoiseLevels`].
+/// Number of values in [`NoiseLevels`] that the estimator learns.
 pub const NOISE_LEVELS: usize = 9;
 
 /// Standard deviations of the errors, degrees unless the name has another unit.
@@ -30,6 +30,16 @@ pub struct NoiseLevels {
     /// White noise of the difference of gyro and satellite compass.
     #[serde(default)]
     pub difference_deg: f64,
+    /// Drift angle by current and wind about its mean, of a ship whose reference is her course
+    /// over ground; zero otherwise.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub drift_angle_deg: f64,
+}
+
+// By reference, as serde calls it.
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_zero(deg: &f64) -> bool {
+    deg.abs() < f64::MIN_POSITIVE
 }
 
 impl NoiseLevels {
@@ -44,6 +54,7 @@ impl NoiseLevels {
         drift_nt: 60.0,
         satellite_deg: 0.2,
         difference_deg: 0.2,
+        drift_angle_deg: 0.0,
     };
 
     /// Levels for rows without times, whose correlations are unknown.
@@ -57,9 +68,10 @@ impl NoiseLevels {
         drift_nt: 0.0,
         satellite_deg: 0.0,
         difference_deg: 0.5,
+        drift_angle_deg: 0.0,
     };
 
-    /// Returns the levels in the order of the fields.
+    /// Returns the levels that the estimator learns, in the order of the fields.
     pub fn to_array(self) -> [f64; NOISE_LEVELS] {
         [
             self.white_deg,
@@ -74,7 +86,7 @@ impl NoiseLevels {
         ]
     }
 
-    /// Makes the levels from an array in the order of the fields.
+    /// Makes the levels of a heading reference from an array in the order of the fields.
     pub fn from_array(a: [f64; NOISE_LEVELS]) -> NoiseLevels {
         NoiseLevels {
             white_deg: a[0],
@@ -86,6 +98,7 @@ impl NoiseLevels {
             drift_nt: a[6],
             satellite_deg: a[7],
             difference_deg: a[8],
+            drift_angle_deg: 0.0,
         }
     }
 
@@ -97,7 +110,21 @@ impl NoiseLevels {
             self.slow_gyro_deg,
             self.compass_swing_deg,
             self.variation_deg,
+            self.drift_angle_deg,
         ];
         parts.map(|sd| sd * sd).iter().sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_of_a_heading_reference_are_stored_without_a_drift_angle() {
+        let stored = serde_json::to_value(NoiseLevels::TYPICAL).unwrap();
+        assert_eq!(stored.get("drift_angle_deg"), None);
+        let read: NoiseLevels = serde_json::from_value(stored).unwrap();
+        assert_eq!(read, NoiseLevels::TYPICAL);
     }
 }

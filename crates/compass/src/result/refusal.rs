@@ -14,6 +14,27 @@ pub enum FitError {
         /// Number of readings.
         readings: u64,
     },
+    /// The vessel has no gyro or satellite compass, and too few samples whose course over ground
+    /// shows the heading.
+    #[error(
+        "no gyro, satellite or other true heading, and the course over ground shows the heading \
+         in {found} of {readings} readings, at least {needed} are needed: {too_slow} are below \
+         {least_sog_kn:.0} knots and {turning} in a turn or just after one"
+    )]
+    NoSteadyCourse {
+        /// Number of readings.
+        readings: u64,
+        /// Number of usable readings.
+        found: u64,
+        /// Least number of usable readings.
+        needed: u64,
+        /// Number of readings at too low a speed.
+        too_slow: u64,
+        /// Number of readings in a turn or just after one.
+        turning: u64,
+        /// Least usable speed over ground, knots.
+        least_sog_kn: f64,
+    },
     /// Every observation has the weight 0; only in fits of a file.
     #[error("the weight is 0 in all of {samples} samples")]
     NoWeight {

@@ -296,6 +296,23 @@ impl Kind {
         )
     }
 
+    /// Returns true for an event that can happen to a ship with the reference of a row. Whatever
+    /// passes by within hours is a current to a ship that has her course alone.
+    pub(crate) fn can_happen(self, row: &Row) -> bool {
+        let needs_heading = matches!(
+            self,
+            Kind::Storm
+                | Kind::Anomaly
+                | Kind::GyroStep
+                | Kind::SatelliteStep
+                | Kind::GyroSettling
+                | Kind::GyroRamp
+                | Kind::StuckGyro
+                | Kind::StuckSatellite
+        );
+        row.course.is_none() || !needs_heading
+    }
+
     /// Returns true for an event that leaves another deviation.
     pub(crate) fn changes_deviation(self) -> bool {
         matches!(

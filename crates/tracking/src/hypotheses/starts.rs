@@ -6,9 +6,11 @@ use crate::state_space::levels::{Level, Levels};
 use crate::state_space::row::Row;
 use crate::state_space::scalar::{Silent, deviation};
 use crate::state_space::states::{
-    ALIGNMENT, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW, HEEL, LAG, LIST, LIST_NT,
-    REFLECTION, RETENTION, SATELLITE, SCHULER, SPEED, STATES, SWING, VARIATION,
+    ALIGNMENT, CRAB, CURRENT, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW, HEEL, LAG, LEEWAY,
+    LIST, LIST_NT, REFLECTION, RETENTION, SATELLITE, SCHULER, SPEED, STATES, STEADY, SWING,
+    VARIATION,
 };
+use crate::state_space::transition::STEADY_KN;
 use binnacle_analysis::estimate::POPULATION_SD;
 use binnacle_analysis::fleet_prior::{PriorComponent, ShipPrior};
 
@@ -38,6 +40,8 @@ const HABITS: [(Option<Level>, f64); 3] = [
     (Some(Level::Drift), 0.1),
     (Some(Level::PortStep), 0.1),
 ];
+/// Constant drift angle of a usual ship, degrees.
+pub(crate) const CRAB_DEG: f64 = 1.0;
 
 /// Returns the starting hypotheses: each guess with each other, for each component of what is
 /// known of ships like her.
@@ -47,7 +51,11 @@ pub(crate) fn starts(
     reference_sd_deg: f64,
     prior: &ShipPrior,
 ) -> Vec<Hypothesis> {
-    let plain = deviations(levels, reference_sd_deg / row.cos_lat.max(0.3));
+    let plain = if row.course.is_some() {
+        drifting(levels, reference_sd_deg)
+    } else {
+        instruments(levels, reference_sd_deg / row.cos_lat.max(0.3))
+    };
     let mut starts: Vec<Hypothesis> = Vec::new();
     for component in &prior.components {
         for size in SIZES {
@@ -56,7 +64,9 @@ pub(crate) fn starts(
                     continue;
                 }
                 let mut filter = of_component(component, size.size, &plain);
-                filter.mean[SPEED] = speed.size;
+                if row.gyro_deg.is_some() {
+                    filter.mean[SPEED] = speed.size;
+                }
                 let probability = component.weight * size.probability * speed.probability;
                 for (nth, alignment) in ALIGNMENTS.into_iter().enumerate() {
                     let is_last = nth + 1 == ALIGNMENTS.len();
@@ -104,17 +114,9 @@ fn with_alignment(filter: &Filter, sd_deg: f64, at: Option<&Row>, levels: &Level
     filter
 }
 
-fn deviations(levels: &Levels, reference_sd_deg: f64) -> [f64; STATES] {
-    let mut sd = [0.0; STATES];
-    sd[RETENTION] = 1.0;
-    sd[RETENTION + 1] = 1.0;
-    sd[HEEL] = 1.0;
-    sd[LIST] = levels.at(Level::List) / LIST_NT;
-    sd[SWING] = levels.at(Level::Swing);
-    sd[FRICTION] = levels.at(Level::Friction);
-    sd[VARIATION] = levels.at(Level::Variation);
-    sd[DAILY] = 0.1;
-    sd[DAILY + 1] = 0.1;
+/// Returns the standard deviations of a ship with gyro or satellite compass.
+fn instruments(levels: &Levels, reference_sd_deg: f64) -> [f64; STATES] {
+    let mut sd = common(levels);
     sd[GYRO] = reference_sd_deg;
     sd[GYRO_SLOW] = levels.at(Level::GyroSlow);
     sd[SCHULER] = levels.at(Level::Schuler);
@@ -125,5 +127,32 @@ fn deviations(levels: &Levels, reference_sd_deg: f64) -> [f64; STATES] {
     sd[SATELLITE] = reference_sd_deg;
     sd[REFLECTION] = levels.at(Level::Reflection);
     sd[LAG] = 0.03;
+    sd
+}
+
+/// Returns the standard deviations of a ship that has a course over ground alone.
+fn drifting(levels: &Levels, reference_sd_deg: f64) -> [f64; STATES] {
+    let mut sd = common(levels);
+    sd[CRAB] = CRAB_DEG.hypot(reference_sd_deg);
+    for part in 0..2 {
+        sd[CURRENT + 2 * part] = levels.at(Level::Current);
+        sd[CURRENT + 2 * part + 1] = 3.0_f64.sqrt() * levels.at(Level::Current);
+        sd[LEEWAY + part] = levels.at(Level::Leeway);
+        sd[STEADY + part] = STEADY_KN;
+    }
+    sd
+}
+
+fn common(levels: &Levels) -> [f64; STATES] {
+    let mut sd = [0.0; STATES];
+    sd[RETENTION] = 1.0;
+    sd[RETENTION + 1] = 1.0;
+    sd[HEEL] = 1.0;
+    sd[LIST] = levels.at(Level::List) / LIST_NT;
+    sd[SWING] = levels.at(Level::Swing);
+    sd[FRICTION] = levels.at(Level::Friction);
+    sd[VARIATION] = levels.at(Level::Variation);
+    sd[DAILY] = 0.1;
+    sd[DAILY + 1] = 0.1;
     sd
 }

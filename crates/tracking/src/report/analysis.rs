@@ -1,6 +1,7 @@
 //! Whole analysis of a compass by the tracker: samples and logbook to epochs, models and
 //! changes.
 
+use super::by_course::{CourseUse, constant_sd_deg};
 use super::cargo_entries::{include_contradicted, include_laden};
 use super::changes::{Findings, changes};
 use super::diagnostics::record_faults;
@@ -17,6 +18,7 @@ use binnacle_analysis::analyse::berth_stays::{add_berth_changes, mark_alongside}
 use binnacle_analysis::analyse::reading::{Reading, readings};
 use binnacle_analysis::analyse::stuck_compass::mark_stuck;
 use binnacle_compass::coverage::{Coverage, coverage};
+use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::result::{Analysis, NoiseLevels};
 
 /// Name of the estimator, kept with its models.
@@ -25,9 +27,11 @@ const ESTIMATOR: &str = "hypotheses-1";
 /// Analyses all samples of one compass.
 pub fn analyse(input: &Input<'_>) -> Analysis {
     let logbook = input.logbook;
-    let mut readings = readings(input.samples, logbook, &input.settings);
+    let grade = ReferenceGrade::of(input.samples);
+    let mut readings = readings(input.samples, logbook, &input.settings, grade);
     let stuck = mark_stuck(&mut readings);
     let stays = mark_alongside(&mut readings);
+    let course = CourseUse::mark(grade, &mut readings);
     let voyage = read_voyage(input, &readings);
     let tracker = &voyage.tracker;
     let detected = merge_overlapping(&tracker.detected);
@@ -36,8 +40,11 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
     let times = RowTimes::new(&voyage.rows, logbook);
 
     let faults = Faults::new(&detected, &suspected, times.last());
-    let constant_sd_deg = input.settings.reference_constant_sd_deg;
-    let references = References::compare(&readings, &voyage.works, constant_sd_deg);
+    let reference_sd_deg = input.settings.reference_constant_sd_deg;
+    let references = match grade {
+        ReferenceGrade::Heading => References::compare(&readings, &voyage.works, reference_sd_deg),
+        ReferenceGrade::CourseOverGround => References::CourseOverGround,
+    };
     record_faults(&mut readings, &references, &faults);
 
     let boundaries = Boundaries::collect(&voyage.works, &detected, &times, logbook);
@@ -51,8 +58,12 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
         references: &references,
         faults: &faults,
         prior: input.prior,
-        noise: noise(tracker.levels()),
-        one_reference_sd_deg: constant_sd_deg,
+        course,
+        noise: noise(tracker.levels(), course),
+        one_reference_sd_deg: match grade {
+            ReferenceGrade::Heading => reference_sd_deg,
+            ReferenceGrade::CourseOverGround => constant_sd_deg(reference_sd_deg),
+        },
     };
     let epochs = fit_epochs(&spans, &mut readings, &fitting);
 
@@ -71,9 +82,11 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
     changes.extend(stuck);
     add_berth_changes(&stays, &readings, &epochs, &mut changes);
     changes.sort_by_key(|change| (change.from, change.detected_at));
+    let mut remarks: Vec<String> = course.map(CourseUse::notice).into_iter().collect();
+    remarks.extend(notices(&voyage, &readings, logbook, &epochs, &contradicted));
     Analysis {
         estimator: ESTIMATOR.to_owned(),
-        notices: notices(&voyage, &readings, logbook, &epochs, &contradicted),
+        notices: remarks,
         data_from: readings.first().map(|r| r.sample().time),
         data_until: readings.last().map(|r| r.sample().time),
         last_place: readings.iter().rev().find_map(Reading::place),
@@ -93,16 +106,22 @@ fn covered(readings: &[Reading]) -> Coverage {
     coverage(with_deviation.filter_map(|r| r.earth.map(|e| (r.sample().compass, e.h_nt, e.z_nt))))
 }
 
-fn noise(levels: &Levels) -> NoiseLevels {
+/// Returns the levels as reported; those of instruments are zero on a ship without them.
+fn noise(levels: &Levels, course: Option<CourseUse>) -> NoiseLevels {
+    let of_instruments = |level: Level| match course {
+        None => levels.at(level),
+        Some(_) => 0.0,
+    };
     NoiseLevels {
         white_deg: levels.at(Level::White),
-        schuler_deg: levels.at(Level::Schuler),
-        turn_deg: 2.0 * levels.at(Level::Schuler),
-        slow_gyro_deg: levels.at(Level::GyroSlow),
+        schuler_deg: of_instruments(Level::Schuler),
+        turn_deg: 2.0 * of_instruments(Level::Schuler),
+        slow_gyro_deg: of_instruments(Level::GyroSlow),
         compass_swing_deg: levels.at(Level::Swing),
         variation_deg: levels.at(Level::Variation),
         drift_nt: levels.at(Level::Drift),
-        satellite_deg: levels.at(Level::Reflection),
-        difference_deg: levels.at(Level::DifferenceWhite),
+        satellite_deg: of_instruments(Level::Reflection),
+        difference_deg: of_instruments(Level::DifferenceWhite),
+        drift_angle_deg: course.map_or(0.0, |course| course.drift_angle_deg(levels)),
     }
 }

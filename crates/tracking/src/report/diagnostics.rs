@@ -4,7 +4,7 @@
 use super::faults::{Faults, Trust};
 use super::references::References;
 use super::voyage::TrackedRow;
-use binnacle_analysis::analyse::reading::{Reading, heading_reading};
+use binnacle_analysis::analyse::reading::Reading;
 use binnacle_analysis::estimate::weight;
 use binnacle_analysis::fit::{Observation, REJECTED_BELOW};
 use binnacle_compass::angle::{Deviation, wrap_180};
@@ -26,26 +26,26 @@ pub(super) fn record_faults(readings: &mut [Reading], references: &References, f
     }
 }
 
-/// Returns a reading with a reference as an observation.
+/// Returns a reading with a deviation as an observation.
 pub(super) fn observation(reading: &Reading) -> Option<Observation> {
-    let read = heading_reading(reading)?;
-    let gyro_share = f64::from(u8::from(read.gyro.is_some()));
+    let sample = reading.sample();
+    let (variation, earth) = reading.variation.zip(reading.earth)?;
     Some(Observation {
-        time: read.time,
-        position: read.position,
-        compass: read.compass,
+        time: Some(sample.time),
+        position: Some(sample.position),
+        compass: sample.compass,
         deviation: Deviation::new(reading.diagnostic.deviation_deg?)?,
-        variation: read.variation,
-        h_nt: read.h_nt,
-        z_nt: read.z_nt,
-        gyro_share,
-        gyro_less_satellite_deg: read
+        variation,
+        h_nt: earth.h_nt,
+        z_nt: earth.z_nt,
+        gyro_share: f64::from(u8::from(reading.gyro.is_some())),
+        gyro_less_satellite_deg: reading
             .gyro
-            .zip(read.satellite)
+            .zip(sample.satellite)
             .map(|(gyro, satellite)| wrap_180(gyro.degrees() - satellite.degrees())),
-        sog_kn: read.sog_kn,
-        windows: read.windows,
-        spread_deg: read.spread_deg,
+        sog_kn: sample.sog_kn,
+        windows: sample.windows,
+        spread_deg: sample.spread_deg,
         weight: 1.0,
     })
 }

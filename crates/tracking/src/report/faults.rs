@@ -80,6 +80,9 @@ impl Faults {
         if has(Class::Passing) {
             return Some(SampleReason::Disturbance);
         }
+        if reading.gyro.is_none() && sample.satellite.is_none() {
+            return None;
+        }
         let trust = self.trust(sample.time);
         let has_sound = (reading.gyro.is_some() && trust.gyro)
             || (sample.satellite.is_some() && trust.satellite);

@@ -1,6 +1,7 @@
 //! Analysis of a compass as epochs, models and changes.
 
 mod analysis;
+mod by_course;
 mod cargo_entries;
 mod causes;
 mod changes;

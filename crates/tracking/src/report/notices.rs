@@ -6,7 +6,7 @@ use crate::state_space::ship_state::ShipState;
 use binnacle_analysis::analyse::reading::Reading;
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::logbook::LogbookEntry;
-use binnacle_compass::model::Model;
+use binnacle_compass::model::{Model, ReferenceGrade};
 use binnacle_compass::result::Epoch;
 use binnacle_compass::ship::{EarthField, PARAMETERS};
 
@@ -75,6 +75,7 @@ fn smallest_step_nt(ship: &ShipState, earth: EarthField) -> f64 {
         samples_used: 0,
         samples_rejected: 0,
         quality: None,
+        reference_grade: ReferenceGrade::Heading,
     };
     let errors = (0..HEADINGS).map(|k| {
         let compass_deg = f64::from(k * 360 / HEADINGS);

@@ -11,13 +11,17 @@ use std::ops::Range;
 /// Gyro's share of the reference heading where both are read.
 const GYRO_SHARE: f64 = 0.7;
 
-/// Comparisons in order of time, one for each epoch of the logbook.
-pub(super) struct References {
-    spans: Vec<ReferenceSpan>,
+/// References of the true headings.
+pub(super) enum References {
+    /// Gyro and satellite compass, with comparisons in order of time, one for each epoch of the
+    /// logbook.
+    Headings(Vec<ReferenceSpan>),
+    /// Course over ground, with nothing to compare it with.
+    CourseOverGround,
 }
 
 /// Comparison of the references in one epoch of the logbook.
-struct ReferenceSpan {
+pub(super) struct ReferenceSpan {
     own: Range<usize>,
     compared: Result<ReferenceCheck, FitError>,
 }
@@ -36,17 +40,21 @@ impl References {
             own: begin..end,
             compared: compare(&readings[begin..end], one_constant_sd_deg),
         });
-        References {
-            spans: spans.collect(),
-        }
+        References::Headings(spans.collect())
     }
 
     /// Returns the comparison to which the reading in a place belongs; the last one for a place
-    /// beyond all readings.
-    pub(super) fn at(&self, place: usize) -> &Result<ReferenceCheck, FitError> {
-        let within = self.spans.iter().find(|span| span.own.contains(&place));
-        let last = &self.spans[self.spans.len() - 1];
-        &within.unwrap_or(last).compared
+    /// beyond all readings, and none by course over ground.
+    ///
+    /// # Errors
+    /// Fails when the references cannot be used.
+    pub(super) fn at(&self, place: usize) -> Result<Option<ReferenceCheck>, FitError> {
+        let References::Headings(spans) = self else {
+            return Ok(None);
+        };
+        let within = spans.iter().find(|span| span.own.contains(&place));
+        let span = within.or(spans.last());
+        span.map(|span| span.compared.clone()).transpose()
     }
 
     /// Returns reference less variation less compass of a reading, degrees; none without a
@@ -58,7 +66,20 @@ impl References {
         trust: Trust,
     ) -> Option<f64> {
         let sample = reading.sample();
-        let check = self.at(place).as_ref().ok();
+        let heading_deg = match self {
+            References::Headings(_) => self.heading_deg(place, reading, trust)?,
+            References::CourseOverGround => sample.cog?.degrees(),
+        };
+        let variation_deg = reading.variation?.degrees_east();
+        Some(wrap_180(
+            heading_deg - variation_deg - sample.compass.degrees(),
+        ))
+    }
+
+    /// Returns the true heading of a reading by the trusted references, degrees.
+    fn heading_deg(&self, place: usize, reading: &Reading, trust: Trust) -> Option<f64> {
+        let sample = reading.sample();
+        let check = self.at(place).ok().flatten();
         let half = check.and_then(|check| check.offset_deg).unwrap_or(0.0) / 2.0;
         let gyro = reading.gyro.map(|gyro| gyro.degrees() - half);
         let satellite = sample.satellite.map(|heading| heading.degrees() + half);
@@ -66,14 +87,12 @@ impl References {
         let is_any = (gyro.is_some() && trust.gyro) || (satellite.is_some() && trust.satellite);
         let gyro = gyro.filter(|_| trust.gyro || !is_any);
         let satellite = satellite.filter(|_| trust.satellite || !is_any);
-        let heading_deg = match (gyro, satellite) {
-            (Some(gyro), Some(satellite)) => satellite + GYRO_SHARE * wrap_180(gyro - satellite),
-            (one, other) => one.or(other)?,
-        };
-        let variation_deg = reading.variation?.degrees_east();
-        Some(wrap_180(
-            heading_deg - variation_deg - sample.compass.degrees(),
-        ))
+        match (gyro, satellite) {
+            (Some(gyro), Some(satellite)) => {
+                Some(satellite + GYRO_SHARE * wrap_180(gyro - satellite))
+            }
+            (one, other) => one.or(other),
+        }
     }
 }
 

@@ -59,9 +59,8 @@ impl Filter {
                 *x *= keep * other;
             }
         }
-        self.turn(&t.schuler);
-        if let Some(anomaly) = &t.anomaly {
-            self.turn(anomaly);
+        for pair in t.pairs() {
+            self.turn(pair);
         }
         for gain in t.gains.iter().flatten() {
             self.gain(gain);
@@ -135,6 +134,9 @@ impl Filter {
         let z_squared = innovation.z_squared();
         self.log_likelihood -= 0.5 * variance.ln();
         let per_raised = weight(z_squared) / variance;
+        let considered = scalar
+            .considered
+            .map(|first| Marginal::from_filter(self, &[first, first + 1]));
         for (mean, gain) in self.mean.iter_mut().zip(&gain) {
             *mean += gain * (per_raised * value);
         }
@@ -143,6 +145,9 @@ impl Filter {
             for (c, gain) in row.iter_mut().zip(&gain) {
                 *c -= step * gain;
             }
+        }
+        if let Some(considered) = considered {
+            self.set(&considered);
         }
         innovation
     }
@@ -164,14 +169,19 @@ impl Filter {
 
     /// Replaces states by independent ones with the given marginal.
     pub(crate) fn restore(&mut self, marginal: &Marginal) {
-        for (a, i) in marginal.states.iter().enumerate() {
+        for i in &marginal.states {
             for j in 0..STATES {
                 self.covariance[*i][j] = 0.0;
                 self.covariance[j][*i] = 0.0;
             }
-            self.mean[*i] = marginal.mean[a];
         }
+        self.set(marginal);
+    }
+
+    /// Sets mean and covariance of states, and leaves what they have in common with others.
+    fn set(&mut self, marginal: &Marginal) {
         for (a, i) in marginal.states.iter().enumerate() {
+            self.mean[*i] = marginal.mean[a];
             for (b, j) in marginal.states.iter().enumerate() {
                 self.covariance[*i][*j] = marginal.covariance[a][b];
             }

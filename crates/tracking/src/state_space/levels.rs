@@ -4,10 +4,12 @@
 //! by filters that run beside with one level nudged (recursive maximum likelihood, Ljung &
 //! Söderström 1983, chapter 3).
 
+use super::row::Row;
+
 /// Size of a habit on a ship that has it more than others.
 const LIVELY: f64 = 4.0;
 /// Number of levels.
-pub(crate) const LEVELS: usize = 11;
+pub(crate) const LEVELS: usize = 13;
 
 /// Habit with a size of its own on each ship.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +36,10 @@ pub(crate) enum Level {
     PortStep,
     /// Drift of (bx, by) in thirty days, nT.
     Drift,
+    /// Component of the current, knots.
+    Current,
+    /// Component of the drift by the wind, knots.
+    Leeway,
 }
 
 impl Level {
@@ -50,14 +56,31 @@ impl Level {
         Level::List,
         Level::PortStep,
         Level::Drift,
+        Level::Current,
+        Level::Leeway,
     ];
 
     /// Returns true if what the level says is forgotten within a day.
     pub(crate) fn is_brief(self) -> bool {
         !matches!(
             self,
-            Level::GyroSlow | Level::List | Level::PortStep | Level::Drift
+            Level::GyroSlow | Level::List | Level::PortStep | Level::Drift | Level::Leeway
         )
+    }
+
+    /// Returns true if a row shows nothing of the level: of instruments where the ship has none,
+    /// and of her drift where she has one.
+    pub(crate) fn is_silent(self, row: &Row) -> bool {
+        let of_course = matches!(self, Level::Current | Level::Leeway);
+        let of_instruments = matches!(
+            self,
+            Level::DifferenceWhite | Level::Schuler | Level::GyroSlow | Level::Reflection
+        );
+        if row.course.is_some() {
+            of_instruments
+        } else {
+            of_course
+        }
     }
 
     /// Returns the size on a usual ship, and the standard deviation of its logarithm over
@@ -74,6 +97,8 @@ impl Level {
             Level::Friction => (0.1, 0.8),
             Level::List | Level::Drift => (60.0, 0.8),
             Level::PortStep => (60.0, 1.0),
+            Level::Current => (1.2, 0.5),
+            Level::Leeway => (0.25, 0.5),
         };
         Size { usual, spread }
     }

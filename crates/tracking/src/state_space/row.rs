@@ -1,6 +1,7 @@
 //! Readings of one time as the tracker takes them, whatever the hypothesis.
 
 use super::states::RETENTION_S;
+use binnacle_analysis::analyse::steady_course::LEAST_SOG_KN;
 use binnacle_analysis::estimate::{Scatter, WhiteNoise};
 use binnacle_analysis::fit::Observation;
 use binnacle_analysis::gyro_speed_error::northerly_speed_error_deg;
@@ -16,6 +17,14 @@ const DAY_S: f64 = 86_400.0;
 /// call, seconds. Where the speed is not known the ship sails at the usual one, knots.
 const PORT_GAP_S: f64 = 2.5 * 3600.0;
 const USUAL_KN: f64 = 10.0;
+/// Noise of the velocity over the ground across it in a mean of minutes, knots: receiver and
+/// seaway. It is a degree at 6 knots.
+const COURSE_NOISE_KN: f64 = 0.1;
+/// Greatest change of heading in a straight run, degrees, greatest time between its rows,
+/// seconds, and number of rows over which its mean is taken.
+const RUN_DEG: f64 = 5.0;
+const RUN_GAP_S: f64 = 3600.0;
+const RUN_ROWS: f64 = 6.0;
 /// Readings before the step of an instrument is judged, share of them that lie on it, and the
 /// distance within which one does.
 const FEWEST_READINGS: u32 = 10;
@@ -43,6 +52,8 @@ pub(crate) struct Row {
     /// Heading by gyro and by satellite compass, less the charted variation.
     pub(crate) gyro_deg: Option<f64>,
     pub(crate) satellite_deg: Option<f64>,
+    /// Motion over the ground of a ship without either.
+    pub(crate) course: Option<Course>,
     pub(crate) variation_deg: f64,
     pub(crate) earth: EarthField,
     pub(crate) cos_lat: f64,
@@ -58,6 +69,41 @@ pub(crate) struct Row {
     pub(crate) difference_white: WhiteNoise,
 }
 
+/// Motion over the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Course {
+    /// Course over ground, less the charted variation.
+    pub(crate) deg: f64,
+    pub(crate) sog_kn: f64,
+    /// Mean compass heading of the straight run until the row before; the row's own on a new one.
+    pub(crate) run_deg: f64,
+}
+
+/// Straight run so far.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    until: Timestamp,
+    /// Mean compass heading over the last rows.
+    mean_deg: f64,
+    rows: f64,
+}
+
+impl Run {
+    /// Returns the run with one more row; none if the row is of another run.
+    fn with(self, row: Run) -> Option<Run> {
+        let off_deg = wrap_180(row.mean_deg - self.mean_deg);
+        if off_deg.abs() > RUN_DEG || row.until.seconds_since(self.until) > RUN_GAP_S {
+            return None;
+        }
+        let rows = (self.rows + 1.0).min(RUN_ROWS);
+        Some(Run {
+            until: row.until,
+            mean_deg: self.mean_deg + off_deg / rows,
+            rows,
+        })
+    }
+}
+
 /// Maker of rows from samples in order of time: what a row needs of those before it.
 #[derive(Clone, Debug)]
 pub(crate) struct RowMaker {
@@ -69,6 +115,7 @@ pub(crate) struct RowMaker {
     last: Option<Last>,
     /// Distance since the first row, nautical miles.
     sailed_nm: f64,
+    run: Option<Run>,
     /// Horizontal field in ship axes with each memory, nT.
     lagged_nt: [[f64; 2]; 2],
 }
@@ -99,11 +146,12 @@ impl RowMaker {
             sources: [None; 2],
             last: None,
             sailed_nm: 0.0,
+            run: None,
             lagged_nt: [[0.0; 2]; 2],
         }
     }
 
-    /// Returns the row of a sample that has a reference.
+    /// Returns the row of a sample that has a reference, or a course over ground.
     pub(crate) fn row(&mut self, placed: &Placed<'_>) -> Option<Row> {
         let Placed {
             sample,
@@ -115,7 +163,12 @@ impl RowMaker {
         let less = |heading: TrueHeading| wrap_180(heading.degrees() - variation_deg);
         let gyro_deg = gyro.map(less);
         let satellite_deg = sample.satellite.map(less);
-        let heading_deg = satellite_deg.or(gyro_deg)?;
+        let reference_deg = satellite_deg.or(gyro_deg);
+        let course = match reference_deg {
+            Some(_) => None,
+            None => self.course(sample, variation_deg),
+        };
+        let heading_deg = reference_deg.or(course.map(|course| course.deg))?;
         let last = self.last;
         let sailed_nm = last.map_or(0.0, |last| miles(last.position, sample.position));
         self.sailed_nm += sailed_nm;
@@ -130,10 +183,10 @@ impl RowMaker {
             heading_deg,
             field_nt,
         });
-        let observation = observation(placed, gyro_deg.or(satellite_deg)?);
+        let observation = observation(placed, gyro_deg.unwrap_or(heading_deg));
         let new_gyro = is_new(&mut self.sources[0], sample.gyro_source);
         let new_satellite = is_new(&mut self.sources[1], sample.satellite_source);
-        let [white, difference_white] = self.white(sample, &observation);
+        let [white, difference_white] = self.white(sample, &observation, course);
         let phase = sample.time.micros() as f64 / 1e6 / DAY_S + sample.position.lon_deg() / 360.0;
         let (sin, cos) = (TAU * phase.rem_euclid(1.0)).sin_cos();
         Some(Row {
@@ -152,6 +205,7 @@ impl RowMaker {
             compass_deg: sample.compass.degrees(),
             gyro_deg,
             satellite_deg,
+            course,
             variation_deg,
             earth,
             cos_lat: sample.position.lat_deg().to_radians().cos().max(0.05),
@@ -168,9 +222,31 @@ impl RowMaker {
         })
     }
 
+    fn course(&mut self, sample: &Sample, variation_deg: f64) -> Option<Course> {
+        let (cog, sog_kn) = sample.cog.zip(sample.sog_kn)?;
+        let own = Run {
+            until: sample.time,
+            mean_deg: sample.compass.degrees(),
+            rows: 1.0,
+        };
+        let last = self.run;
+        let longer = last.and_then(|last| last.with(own));
+        self.run = longer.or(Some(own));
+        Some(Course {
+            deg: wrap_180(cog.degrees() - variation_deg),
+            sog_kn: sog_kn.max(LEAST_SOG_KN),
+            run_deg: last.filter(|_| longer.is_some()).unwrap_or(own).mean_deg,
+        })
+    }
+
     /// Returns the noise that is new in the deviation and in the references' difference, the
     /// instruments' digits in it.
-    fn white(&mut self, sample: &Sample, observation: &Observation) -> [WhiteNoise; 2] {
+    fn white(
+        &mut self,
+        sample: &Sample,
+        observation: &Observation,
+        course: Option<Course>,
+    ) -> [WhiteNoise; 2] {
         let headings = [
             Some(sample.compass.degrees()),
             sample.gyro.map(TrueHeading::degrees),
@@ -182,6 +258,9 @@ impl RowMaker {
         let [compass, gyro, satellite] = self.digits.map(Digits::variance);
         let mut white = self.scatter.white(observation);
         white.scatter += compass + gyro.max(satellite);
+        if let Some(course) = course {
+            white.scatter += (COURSE_NOISE_KN / course.sog_kn).to_degrees().powi(2);
+        }
         let mut difference = WhiteNoise::of_difference(observation);
         difference.scatter += gyro + satellite;
         [white, difference]

@@ -1,11 +1,11 @@
 //! A row's readings as scalars in the filter's states, for one hypothesis.
 
 use super::levels::{Level, Levels};
-use super::row::Row;
+use super::row::{Course, Row};
 use super::states::{
-    ALIGNMENT, ANOMALY, BX, BY, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW, HEEL,
-    HEEL_NT_PER_RAD, LAG, LIST, LIST_NT, REFLECTION, RETENTION, SATELLITE, SCHULER, SETTLING,
-    SPEED, STATES, SWING, USUAL_H_NT, VARIATION, dot, parameters,
+    ALIGNMENT, ANOMALY, BX, BY, CRAB, CURRENT, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW,
+    HEEL, HEEL_NT_PER_RAD, LAG, LEEWAY, LIST, LIST_NT, REFLECTION, RETENTION, SATELLITE, SCHULER,
+    SETTLING, SPEED, STATES, STEADY, SWING, USUAL_H_NT, VARIATION, dot, parameters,
 };
 use binnacle_analysis::estimate::{Direction, Needle, POPULATION_SD};
 use binnacle_compass::angle::wrap_180;
@@ -24,6 +24,12 @@ const LEAST_PER_COMPASS: f64 = 0.1;
 /// Standard deviation of a reading that says nothing, degrees.
 const SAYS_NOTHING_DEG: f64 = 20.0;
 
+/// Greatest speed across the heading over the speed over ground.
+const MOST_ACROSS: f64 = 0.7;
+/// States that set the ship to the east, and to the north.
+const SETS_EAST: [usize; 3] = [CURRENT, LEEWAY, STEADY];
+const SETS_NORTH: [usize; 3] = [CURRENT + 2, LEEWAY + 1, STEADY + 1];
+
 /// Linearised reading, degrees.
 #[derive(Clone, Debug)]
 pub(crate) struct Scalar {
@@ -32,6 +38,9 @@ pub(crate) struct Scalar {
     pub(crate) load: [f64; STATES],
     /// Variance of the noise that is new in it.
     pub(crate) variance: f64,
+    /// Pair of states that it may not teach, by the first: they are uncertain for ever
+    /// (Schmidt–Kalman filter: Schmidt 1966).
+    pub(crate) considered: Option<usize>,
 }
 
 /// Instruments that a hypothesis holds to say nothing.
@@ -76,7 +85,10 @@ pub(crate) fn deviation(
     } else {
         white
     };
-    deviation_by(row, mean, &Reference::mixed(row, share), variance)
+    match &row.course {
+        Some(course) => deviation_by_course(row, mean, course, variance),
+        None => deviation_by(row, mean, &Reference::mixed(row, share), variance),
+    }
 }
 
 /// Returns the deviation that an azimuth showed, in the circumstances of a row: no reference
@@ -95,16 +107,21 @@ pub(crate) fn sighted_deviation(row: &Row, mean: &[f64; STATES], azimuth: &Azimu
     deviation_by(&row, mean, &sight, result.standard_error_deg.powi(2))
 }
 
-/// Returns the gyro's error that an azimuth showed; none without the gyro's reading.
+/// Returns the gyro's error that an azimuth showed; none without the gyro's reading, and on a
+/// ship without heading reference.
 pub(crate) fn sighted_gyro(row: &Row, mean: &[f64; STATES], azimuth: &Azimuth) -> Option<Scalar> {
     let result = azimuth.result();
     let error_deg = -result.gyro_error_deg?.degrees_east();
+    if row.course.is_some() {
+        return None;
+    }
     let heading_deg = result.true_heading_deg.degrees() - row.variation_deg;
     let load = Reference::gyro(row, heading_deg).load;
     Some(Scalar {
         innovation: wrap_180(error_deg - dot(&load, mean)),
         load,
         variance: result.standard_error_deg.powi(2),
+        considered: None,
     })
 }
 
@@ -177,13 +194,89 @@ impl Reference {
             innovation: wrap_180(self.heading_deg - other.heading_deg - dot(&load, mean)),
             load,
             variance,
+            considered: None,
         }
     }
 }
 
-fn deviation_by(row: &Row, mean: &[f64; STATES], reference: &Reference, variance: f64) -> Scalar {
+/// Returns course over ground less compass, at the mean. Its slopes are taken on the run until
+/// the row before, where this row's noise has no part in them: correlated with the innovation by
+/// a hundredth, they would turn current into deviation, because the two differ in little else
+/// than how long they last.
+fn deviation_by_course(row: &Row, mean: &[f64; STATES], course: &Course, variance: f64) -> Scalar {
+    let mut load = [0.0; STATES];
+    load[CRAB] = 1.0;
+    load_card_and_variation(row, &mut load);
+    let ship = Ship::new(row, mean);
+    let of_card = mean[ALIGNMENT] + mean[SWING] + load[FRICTION] * mean[FRICTION];
+    let needle_at = |compass_deg: f64| {
+        let zero_deg = compass_deg + of_card;
+        let magnetic_deg = |needle: &Needle| zero_deg + needle.deviation_rad().to_degrees();
+        let rough_deg = magnetic_deg(&ship.needle(zero_deg, row));
+        let needle = ship.needle(rough_deg, row);
+        (magnetic_deg(&needle) + row.variation_deg, needle)
+    };
+    let (true_deg, needle) = needle_at(row.compass_deg);
+    let innovation = course.deg
+        - row.compass_deg
+        - dot(&load, mean)
+        - needle.deviation_rad().to_degrees()
+        - Drift::new(true_deg, course.sog_kn, mean).angle_deg;
+    let (true_deg, needle) = needle_at(course.run_deg);
+    let drift = Drift::new(true_deg, course.sog_kn, mean);
+    Ship::load(row, &needle, &mut load);
+    // The heading by the compass turns the needle and the drift angle, too.
+    let moves = (2.0 - needle.compass_per_magnetic()) * (1.0 + drift.by_heading);
+    for state in (0..=HEEL).chain([LIST, ALIGNMENT, SWING, FRICTION]) {
+        load[state] *= moves;
+    }
+    drift.load(&mut load);
+    Scalar {
+        innovation: wrap_180(innovation),
+        load,
+        variance,
+        considered: Some(STEADY),
+    }
+}
+
+/// Drift angle on a heading. Over the ground the ship goes across her heading as fast as current
+/// and wind set her there: the angle's sine is that speed over the speed over ground.
+struct Drift {
+    angle_deg: f64,
+    /// Growth of the angle by the heading.
+    by_heading: f64,
+    /// Growth of the angle by a set to the east and to the north, degrees a knot.
+    by_set: [f64; 2],
+}
+
+impl Drift {
+    fn new(true_deg: f64, sog_kn: f64, mean: &[f64; STATES]) -> Drift {
+        let (sin, cos) = true_deg.to_radians().sin_cos();
+        let set_kn = |states: [usize; 3]| states.iter().map(|i| mean[*i]).sum::<f64>();
+        let [east_kn, north_kn] = [set_kn(SETS_EAST), set_kn(SETS_NORTH)];
+        let across = (east_kn * cos - north_kn * sin) / sog_kn;
+        let sine = across.clamp(-MOST_ACROSS, MOST_ACROSS);
+        let cosine = (1.0 - sine * sine).sqrt();
+        let deg_per_kn = (1.0 / (sog_kn * cosine)).to_degrees();
+        Drift {
+            angle_deg: sine.asin().to_degrees(),
+            by_heading: -(east_kn * sin + north_kn * cos) / (sog_kn * cosine),
+            by_set: [deg_per_kn * cos, -deg_per_kn * sin],
+        }
+    }
+
+    fn load(&self, load: &mut [f64; STATES]) {
+        for (states, by_set) in [SETS_EAST, SETS_NORTH].into_iter().zip(self.by_set) {
+            for state in states {
+                load[state] = by_set;
+            }
+        }
+    }
+}
+
+/// Adds the slopes by the errors of card and variation.
+fn load_card_and_variation(row: &Row, load: &mut [f64; STATES]) {
     let by_h = USUAL_H_NT / row.earth.h_nt;
-    let mut load = reference.load;
     load[ALIGNMENT] = 1.0;
     load[SWING] = 1.0;
     load[FRICTION] = by_h;
@@ -191,10 +284,15 @@ fn deviation_by(row: &Row, mean: &[f64; STATES], reference: &Reference, variance
     load[ANOMALY] = by_h;
     load[DAILY] = by_h * row.daily[0];
     load[DAILY + 1] = by_h * row.daily[1];
+}
+
+fn deviation_by(row: &Row, mean: &[f64; STATES], reference: &Reference, variance: f64) -> Scalar {
+    let mut load = reference.load;
+    load_card_and_variation(row, &mut load);
     let constant = dot(&load, mean);
     let ship = Ship::new(row, mean);
     // Errors of reference and variation turn the heading; those of the compass do not.
-    let of_card = mean[ALIGNMENT] + mean[SWING] + by_h * mean[FRICTION];
+    let of_card = mean[ALIGNMENT] + mean[SWING] + load[FRICTION] * mean[FRICTION];
     let magnetic_deg = reference.heading_deg - (constant - of_card);
     let innovation_at = |needle: &Needle| {
         wrap_180(
@@ -213,6 +311,7 @@ fn deviation_by(row: &Row, mean: &[f64; STATES], reference: &Reference, variance
         innovation,
         load,
         variance,
+        considered: None,
     }
 }
 

@@ -2,6 +2,10 @@
 //!
 //! Ship's parameters are in units of the population's standard deviations, all else in the
 //! units named here.
+//!
+//! The states from [`REFERENCE`] on are the errors of the reference. A voyage with gyro or
+//! satellite compass has those of the instruments, one without has those of the course over
+//! ground in the same places: no voyage has both.
 
 use binnacle_analysis::estimate::POPULATION_SD;
 use binnacle_compass::model::Parameters;
@@ -31,8 +35,10 @@ pub(crate) const FRICTION: usize = 13;
 pub(crate) const VARIATION: usize = 14;
 /// Daily wave of the variation by local time, sine and cosine, as above.
 pub(crate) const DAILY: usize = 15;
+/// First state of the reference's errors.
+const REFERENCE: usize = 17;
 /// Constant error of the gyro, degrees.
-pub(crate) const GYRO: usize = 17;
+pub(crate) const GYRO: usize = REFERENCE;
 /// Slow wander of the gyro's settling point, degrees at the equator.
 pub(crate) const GYRO_SLOW: usize = 18;
 /// Schuler swing of the gyro and its rate, degrees at the equator.
@@ -49,11 +55,20 @@ pub(crate) const SATELLITE: usize = 25;
 pub(crate) const REFLECTION: usize = 26;
 /// Lag of the references, minutes.
 pub(crate) const LAG: usize = 27;
-/// Local anomaly of the variation and its rate an hour, degrees.
+/// Local anomaly of the variation and its rate in its memory, degrees.
 pub(crate) const ANOMALY: usize = 28;
 
 /// Growth of the permanent field fore and aft a day; athwartships follows.
 pub(crate) const GROWTH: usize = 30;
+
+/// Constant drift angle of a ship without heading reference, degrees: propeller, rudder, trim.
+pub(crate) const CRAB: usize = REFERENCE;
+/// Current to the east and its rate, and to the north and its rate, knots.
+pub(crate) const CURRENT: usize = REFERENCE + 1;
+/// Leeway as a drift by the weather's wind to the east and to the north, knots.
+pub(crate) const LEEWAY: usize = REFERENCE + 5;
+/// Steady drift by prevailing winds and residual currents to the east and to the north, knots.
+pub(crate) const STEADY: usize = REFERENCE + 7;
 
 /// Memories of retained magnetism, seconds (DOMAIN: hours to days).
 pub(crate) const RETENTION_S: [f64; 2] = [4.0 * 3600.0, 16.0 * 3600.0];
@@ -80,4 +95,5 @@ pub(crate) fn dot(a: &[f64; STATES], b: &[f64; STATES]) -> f64 {
     sums[0] + sums[1]
 }
 
+const _: () = assert!(STEADY + 1 < LAG);
 const _: () = assert!(RETENTION == PARAMETERS);

@@ -3,8 +3,8 @@
 use super::levels::{Level, Levels};
 use super::row::Row;
 use super::states::{
-    ANOMALY, BX, BY, FRICTION, GROWTH, GYRO, GYRO_SLOW, LIST, LIST_NT, REFLECTION, SATELLITE,
-    SCHULER, SETTLING, STATES, SWING, VARIATION,
+    ANOMALY, BX, BY, CURRENT, FRICTION, GROWTH, GYRO, GYRO_SLOW, LEEWAY, LIST, LIST_NT, REFLECTION,
+    SATELLITE, SCHULER, SETTLING, STATES, STEADY, SWING, VARIATION,
 };
 use binnacle_analysis::estimate::{
     COMPASS_SWING_S, POPULATION_SD, SATELLITE_S, SLOW_GYRO_S, VARIATION_NM, swing_over,
@@ -32,6 +32,18 @@ const ANOMALY_DEG: f64 = 2.5;
 /// Drift of the induced parameters over the population, for a drift of (bx, by) of the
 /// population's size.
 const INDUCED_SHARE: f64 = 0.3;
+/// Memory of the current, which is smooth: tidal streams turn in six hours (Bowditch, The
+/// American Practical Navigator, "Tides and tidal currents"), streams and eddies change within
+/// tens of miles.
+const CURRENT_S: f64 = 6.0 * 3600.0;
+const CURRENT_NM: f64 = 60.0;
+/// Memory of the drift by the wind: weather systems pass in days.
+const LEEWAY_S: f64 = 36.0 * 3600.0;
+/// Memory of the drift by prevailing winds and residual currents, a season, and its size: general
+/// currents of the oceans run at 0.3 to 1 knot (Bowditch, "Ocean currents"), on some routes with
+/// the ship and on some against her.
+const STEADY_S: f64 = 60.0 * 86_400.0;
+pub(crate) const STEADY_KN: f64 = 0.3;
 /// Constant error of one reference against another of its kind, degrees.
 const NEW_REFERENCE_DEG: f64 = 1.0;
 
@@ -42,8 +54,10 @@ pub(crate) struct Transition {
     pub(crate) keep: [f64; STATES],
     /// Variance added to each state.
     pub(crate) added: [f64; STATES],
-    /// The gyro's swing with its rate.
-    pub(crate) schuler: Pair,
+    /// The gyro's swing with its rate; none without a gyro's states.
+    pub(crate) schuler: Option<Pair>,
+    /// The current to the east and to the north, each with its rate; none without its states.
+    pub(crate) current: Option<[Pair; 2]>,
     /// An anomaly with its rate, while one is passed.
     pub(crate) anomaly: Option<Pair>,
     /// Shares of states that other states gain.
@@ -72,30 +86,25 @@ impl Transition {
         let mut t = Transition {
             keep: [1.0; STATES],
             added: [0.0; STATES],
-            schuler: swing(
-                row.seconds,
-                row.turned_deg.abs() > KICK_DEG,
-                levels.at(Level::Schuler),
-            ),
+            schuler: None,
+            current: None,
             anomaly: None,
             gains: [None; 2],
         };
         let seconds = row.seconds;
         let turned = row.turned_deg.abs();
-        t.fade(GYRO_SLOW, seconds / SLOW_GYRO_S, levels.at(Level::GyroSlow));
+        if row.course.is_some() {
+            t.drift_of_ship(row, levels);
+        } else {
+            t.instruments(row, levels);
+        }
         t.fade(SWING, seconds / COMPASS_SWING_S, levels.at(Level::Swing));
         t.fade(
             VARIATION,
             row.miles / VARIATION_NM,
             levels.at(Level::Variation),
         );
-        t.fade(
-            REFLECTION,
-            seconds / SATELLITE_S,
-            levels.at(Level::Reflection),
-        );
         t.fade(LIST, seconds / LIST_S, levels.at(Level::List) / LIST_NT);
-        t.fade(SETTLING, seconds / SETTLING_S, 0.0);
         let friction = if turned > RESEATED_DEG {
             f64::INFINITY
         } else {
@@ -106,12 +115,41 @@ impl Transition {
         if row.after_port {
             t.step(levels.at(Level::PortStep).powi(2), 1.0);
         }
+        t
+    }
+
+    /// Moves the errors of gyro and satellite compass.
+    fn instruments(&mut self, row: &Row, levels: &Levels) {
+        let seconds = row.seconds;
+        let kicked = row.turned_deg.abs() > KICK_DEG;
+        self.schuler = Some(swing(seconds, kicked, levels.at(Level::Schuler)));
+        self.fade(GYRO_SLOW, seconds / SLOW_GYRO_S, levels.at(Level::GyroSlow));
+        let reflection = levels.at(Level::Reflection);
+        self.fade(REFLECTION, seconds / SATELLITE_S, reflection);
+        self.fade(SETTLING, seconds / SETTLING_S, 0.0);
         for (state, is_new) in [(GYRO, row.new_gyro), (SATELLITE, row.new_satellite)] {
             if is_new {
-                t.added[state] += NEW_REFERENCE_DEG * NEW_REFERENCE_DEG;
+                self.added[state] += NEW_REFERENCE_DEG * NEW_REFERENCE_DEG;
             }
         }
-        t
+    }
+
+    /// Moves the current and the drift by the wind.
+    fn drift_of_ship(&mut self, row: &Row, levels: &Levels) {
+        let memories = row.seconds / CURRENT_S + row.miles / CURRENT_NM;
+        let current = levels.at(Level::Current);
+        self.current = Some([CURRENT, CURRENT + 2].map(|state| smooth(state, memories, current)));
+        for part in 0..2 {
+            let leeway = levels.at(Level::Leeway);
+            self.fade(LEEWAY + part, row.seconds / LEEWAY_S, leeway);
+            self.fade(STEADY + part, row.seconds / STEADY_S, STEADY_KN);
+        }
+    }
+
+    /// Returns the transitions of states with their rates.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = &Pair> {
+        let current = self.current.iter().flatten();
+        self.schuler.iter().chain(current).chain(&self.anomaly)
     }
 
     /// Returns this transition to a row for levels of which one is scaled from those that it
@@ -133,10 +171,14 @@ impl Transition {
             Level::Variation => t.added[VARIATION] *= square,
             Level::Reflection => t.added[REFLECTION] *= square,
             Level::List => t.added[LIST] *= square,
-            Level::Schuler => {
-                for added in t.schuler.added.as_flattened_mut() {
-                    *added *= square;
-                }
+            Level::Schuler => t.schuler.iter_mut().for_each(|pair| pair.scale(square)),
+            Level::Current => {
+                let pairs = t.current.iter_mut().flatten();
+                pairs.for_each(|pair| pair.scale(square));
+            }
+            Level::Leeway => {
+                t.added[LEEWAY] *= square;
+                t.added[LEEWAY + 1] *= square;
             }
             Level::PortStep | Level::Drift => {
                 return Transition::to(row, &levels.scaled(level, factor));
@@ -188,25 +230,40 @@ impl Transition {
         self.added[state] = sd * sd * (1.0 - keep * keep);
     }
 
-    /// Lets a local anomaly come and go smoothly: a Gaussian process of the Matérn kind, once
-    /// differentiable, of memory [`ANOMALY_S`] (Rasmussen & Williams 2006, eq. 4.17).
+    /// Lets a local anomaly come and go smoothly.
     pub(crate) fn pass_anomaly(&mut self, seconds: f64) {
-        let hours = seconds / 3600.0;
-        let decay = 3.0_f64.sqrt() / (ANOMALY_S / 3600.0);
-        let keep = (-decay * hours).exp();
-        let [a, b] = [keep * (1.0 + decay * hours), keep * hours];
-        let [c, d] = [-keep * decay * decay * hours, keep * (1.0 - decay * hours)];
-        let value = ANOMALY_DEG * ANOMALY_DEG;
-        let rate = value * decay * decay;
-        let across = -(a * c * value + b * d * rate);
-        self.anomaly = Some(Pair {
-            state: ANOMALY,
-            matrix: [[a, b], [c, d]],
-            added: [
-                [value - a * a * value - b * b * rate, across],
-                [across, rate - c * c * value - d * d * rate],
-            ],
-        });
+        self.anomaly = Some(smooth(ANOMALY, seconds / ANOMALY_S, ANOMALY_DEG));
+    }
+}
+
+impl Pair {
+    fn scale(&mut self, square: f64) {
+        for added in self.added.as_flattened_mut() {
+            *added *= square;
+        }
+    }
+}
+
+/// Returns the transition of a smooth process and its rate per memory: a Gaussian process of the
+/// Matérn kind, once differentiable (Rasmussen & Williams 2006, eq. 4.17).
+fn smooth(state: usize, memories: f64, sd: f64) -> Pair {
+    let decay = 3.0_f64.sqrt();
+    let keep = (-decay * memories).exp();
+    let [a, b] = [keep * (1.0 + decay * memories), keep * memories];
+    let [c, d] = [
+        -keep * decay * decay * memories,
+        keep * (1.0 - decay * memories),
+    ];
+    let value = sd * sd;
+    let rate = value * decay * decay;
+    let across = -(a * c * value + b * d * rate);
+    Pair {
+        state,
+        matrix: [[a, b], [c, d]],
+        added: [
+            [value - a * a * value - b * b * rate, across],
+            [across, rate - c * c * value - d * d * rate],
+        ],
     }
 }
 

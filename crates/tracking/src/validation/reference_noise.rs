@@ -42,7 +42,10 @@ impl ReferenceNoise {
         let seconds = last_sample.time.seconds_since(first_sample.time);
         let lasting = |sd: f64, memory_s: f64| sd * sd * mean_share(seconds / memory_s);
         let levels = &self.levels;
-        let reference = if first_sample.satellite.is_some() {
+        let reference = if levels.drift_angle_deg > 0.0 {
+            // Within a course of four hours, current and leeway hardly change.
+            levels.drift_angle_deg.powi(2)
+        } else if first_sample.satellite.is_some() {
             lasting(levels.satellite_deg, SATELLITE_S)
         } else {
             let cos_lat = first_sample.position.lat_deg().to_radians().cos().max(0.05);

@@ -4,6 +4,7 @@
 //! This is enough to try a recording that has one row a second.
 
 use super::ten_seconds::{TenSeconds, mean_sample, ten_seconds};
+use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::sample::Sample;
 use serde::Serialize;
 
@@ -40,7 +41,7 @@ pub struct Settled {
     pub minutes_settled: f64,
     /// Minutes at rest.
     pub minutes_at_rest: f64,
-    /// Minutes without a reference heading.
+    /// Minutes without a reference heading, and without a course over ground where no row has one.
     pub minutes_without_reference: f64,
     /// Settled samples, in order of time.
     #[serde(skip)]
@@ -62,7 +63,9 @@ pub fn settle(rows: &[Sample]) -> Settled {
     }
     let all = ten_seconds(&rows);
     let longest = (all.len() / WANTED_SAMPLES).clamp(SHORTEST, LONGEST);
-    let compared: Vec<&TenSeconds> = all.iter().filter(|t| t.has_reference()).collect();
+    let grade = ReferenceGrade::of(&rows);
+    let compared = all.iter().filter(|t| t.has_reference(grade));
+    let compared: Vec<&TenSeconds> = compared.collect();
     let moving: Vec<&TenSeconds> = compared
         .iter()
         .copied()
@@ -138,7 +141,7 @@ fn steady(tens: &[&TenSeconds], longest: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+    use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading, wrap_180};
     use binnacle_compass::position::Position;
     use binnacle_compass::time::Timestamp;
 
@@ -220,6 +223,20 @@ mod tests {
         let settled = settle(&rows);
         assert_eq!(settled.samples.len(), 0);
         assert!((settled.minutes_without_reference - 10.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn rows_with_a_course_alone_become_samples_of_the_course() {
+        let mut rows = recording(&[10.0; 600]);
+        for row in &mut rows {
+            row.satellite = None;
+            row.cog = CourseOverGround::new(14.0);
+        }
+        let settled = settle(&rows);
+        assert!(settled.minutes_settled > 7.0, "{settled:?}");
+        let sample = settled.samples[0];
+        assert!((sample.cog.unwrap().degrees() - 14.0).abs() < 1e-9);
+        assert_eq!(sample.gyro.or(sample.satellite), None);
     }
 
     #[test]

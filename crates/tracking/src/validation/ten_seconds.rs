@@ -1,6 +1,7 @@
 //! Means of ten seconds of a raw recording, and samples of several of them.
 
 use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading, wrap_180};
+use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
 
@@ -45,8 +46,11 @@ impl TenSeconds {
         })
     }
 
-    pub(super) fn has_reference(&self) -> bool {
-        self.off_deg().is_some()
+    pub(super) fn has_reference(&self, grade: ReferenceGrade) -> bool {
+        match grade {
+            ReferenceGrade::Heading => self.off_deg().is_some(),
+            ReferenceGrade::CourseOverGround => self.cog_off_deg.is_some(),
+        }
     }
 
     /// Returns reference less compass.

@@ -39,9 +39,14 @@ pub(crate) struct EvidenceSums {
 impl EvidenceSums {
     /// Adds a row that was read.
     pub(crate) fn add(&mut self, row: &Row, read: &Read) {
-        let share = gyro_share(row, Silent::default());
+        let [gyro, satellite] = if row.course.is_some() {
+            [0.0; 2]
+        } else {
+            let gyro = gyro_share(row, Silent::default());
+            [gyro, 1.0 - gyro]
+        };
         let load = &read.load.load;
-        let main = [load[BX], load[BY], 1.0, share, 1.0 - share];
+        let main = [load[BX], load[BY], 1.0, gyro, satellite];
         self.add_scalar(&main, read.deviation);
         if let Some(difference) = read.difference {
             self.add_scalar(&[0.0, 0.0, 0.0, 1.0, -1.0], difference);

@@ -78,7 +78,7 @@ impl Learning {
     pub(crate) fn read(&mut self, row: &Row, usual: &Transition, gained: f64, learns: bool) {
         let mut factors = self.log_factors;
         for (i, level) in Level::ALL.into_iter().enumerate() {
-            if !self.is_on(i, level) {
+            if level.is_silent(row) || !self.is_on(i, level) {
                 continue;
             }
             let hypothesis = &mut self.nudged[i];

@@ -18,6 +18,8 @@ const TRIED_AGAIN: f64 = 2.0;
 /// Greatest turn of an instrument that stood, and least of a ship that turned, degrees.
 const STOOD_DEG: f64 = 2.0;
 const TURNED_DEG: f64 = 10.0;
+/// Greatest change of a drift angle, degrees.
+const DRIFT_ANGLE_DEG: f64 = 30.0;
 /// Least time between checkpoints for which an event's prior counts, seconds.
 const LEAST_EXPOSURE_S: f64 = 300.0;
 
@@ -187,7 +189,10 @@ impl Tracker {
         let compass = turned(|row| Some(row.compass_deg));
         let gyro = turned(|row| row.gyro_deg);
         let satellite = turned(|row| row.satellite_deg);
+        let course = turned(|row| row.course.map(|course| course.deg));
+        let course = course.map(|deg| deg - DRIFT_ANGLE_DEG);
         let (own, others) = match kind {
+            Kind::StuckCard if first.course.is_some() => (compass, [course, course]),
             Kind::StuckCard => (compass, [gyro, satellite]),
             Kind::StuckGyro => (gyro, [compass, satellite]),
             _ => (satellite, [compass, gyro]),
@@ -202,6 +207,9 @@ impl Tracker {
     /// cannot happen there.
     fn log_prior(&self, place: usize, kind: &KindRow) -> Option<f64> {
         let checkpoint = &self.checkpoints[place];
+        if !kind.kind.can_happen(&checkpoint.begin.row) {
+            return None;
+        }
         let next = self.checkpoints.get(place + 1);
         let next = next.map_or(self.rows.back()?.time, |next| next.time);
         let seconds = next.seconds_since(checkpoint.time).max(LEAST_EXPOSURE_S);

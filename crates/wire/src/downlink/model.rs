@@ -9,13 +9,15 @@
 use super::fields::{read_time, read_withdrawn, write_time, write_withdrawn};
 use crate::codec::bits::{BitReader, BitWriter};
 use crate::messages::ModelDownlink;
-use binnacle_compass::model::{Covariance, Identifiable, Model, Parameters};
+use binnacle_compass::model::{Covariance, Identifiable, Model, Parameters, ReferenceGrade};
 use uuid::Uuid;
 
 const HAS_REPLACES: u64 = 1;
 const HAS_COVARIANCE: u64 = 2;
 const HAS_IDENTIFIABLE: u64 = 4;
 const HAS_RMS: u64 = 8;
+/// Grade of course over ground; an earlier agent passes over it.
+const BY_COURSE: u64 = 16;
 /// Seven parameters and the constant.
 const COUNT: usize = 8;
 /// Value of an entry of 1 in the factor.
@@ -38,7 +40,8 @@ pub(super) fn encode(sent: &ModelDownlink) -> Option<Vec<u8>> {
     let flags = flag(sent.replaces.is_some(), HAS_REPLACES)
         | flag(model.covariance.is_some(), HAS_COVARIANCE)
         | flag(model.identifiable.is_some(), HAS_IDENTIFIABLE)
-        | flag(model.rms_deg.is_some(), HAS_RMS);
+        | flag(model.rms_deg.is_some(), HAS_RMS)
+        | flag(!model.reference_grade.is_heading(), BY_COURSE);
     writer.varint(flags);
     if let Some(replaces) = &sent.replaces {
         write_withdrawn(&mut writer, replaces)?;
@@ -129,6 +132,10 @@ pub(super) fn read(reader: &mut BitReader<'_>) -> Option<ModelDownlink> {
             samples_used,
             samples_rejected,
             quality: None,
+            reference_grade: match flags & BY_COURSE {
+                0 => ReferenceGrade::Heading,
+                _ => ReferenceGrade::CourseOverGround,
+            },
         },
     })
 }

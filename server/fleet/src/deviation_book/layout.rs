@@ -203,6 +203,8 @@ fn reason_in_words(reason: SampleReason) -> &'static str {
         SampleReason::Disturbance => "disturbed",
         SampleReason::Outlier => "disagrees with the rest",
         SampleReason::NoModel => "",
+        SampleReason::TooSlowForCourse => "too slow for the course over ground",
+        SampleReason::TurningCourse => "turning",
     }
 }
 

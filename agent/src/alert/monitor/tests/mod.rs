@@ -4,7 +4,7 @@ use super::*;
 use crate::config::GyroError;
 use crate::corrected_heading::predict;
 use crate::sampler::Details;
-use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::position::Position;
 
 mod verdict;
@@ -35,6 +35,7 @@ fn model(version: u32) -> ModelDownlink {
             samples_used: 0,
             samples_rejected: 0,
             quality: None,
+            reference_grade: ReferenceGrade::Heading,
         },
     }
 }

@@ -17,7 +17,7 @@ use crate::binnacle::tests::class_a;
 use crate::binnacle::{Axis, Binnacle, BinnacleForm, DesignForm, Setting};
 use crate::corrector::effect;
 use binnacle_compass::angle::MagneticHeading;
-use binnacle_compass::model::{Identifiable, Model, Parameters};
+use binnacle_compass::model::{Identifiable, Model, Parameters, ReferenceGrade};
 use binnacle_compass::ship::{EarthField, ShipMagnetism};
 
 pub(crate) const BISCAY: EarthField = EarthField {
@@ -74,6 +74,7 @@ impl Case {
             samples_used: 100,
             samples_rejected: 0,
             quality: None,
+            reference_grade: ReferenceGrade::Heading,
         };
         // The magnetometer does not measure the needles.
         let there = sum(&bare, &there.as_ship(f64::INFINITY));

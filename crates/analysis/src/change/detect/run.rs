@@ -28,7 +28,7 @@ pub(crate) fn detect(observations: &[Observation], input: &DetectionInput<'_>) -
     let Some(learnt) = LearntNoise::first(observations, input.prior, input.levels) else {
         return Detection::default();
     };
-    let mut search = Detector::new(observations, input, learnt);
+    let mut search = Detector::new(observations, input, &learnt);
     for k in 0..observations.len() {
         search.read_row(k);
     }

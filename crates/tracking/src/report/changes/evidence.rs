@@ -80,9 +80,13 @@ fn explanation(detected: &Detected, facts: &Facts) -> String {
             likelier(own, of(Class::Reference))
         ),
         Kind::Alignment => format!(
-            "the error changed equally on every heading, and gyro and satellite compass do not \
-             part: a change of the compass's own alignment is {} a change of the vessel's \
-             magnetism and {} a fault of the reference",
+            "the error changed equally on every heading{}: a change of the compass's own \
+             alignment is {} a change of the vessel's magnetism and {} a fault of the reference",
+            if facts.one_reference {
+                ""
+            } else {
+                ", and gyro and satellite compass do not part"
+            },
             likelier(
                 kind(posterior, Kind::Alignment),
                 own - kind(posterior, Kind::Alignment)

@@ -2,6 +2,7 @@
 
 use super::quality::{Knowledge, quality};
 use super::spans::Span;
+use crate::report::by_course::CourseUse;
 use crate::report::diagnostics::{observation, record_outcome};
 use crate::report::faults::Faults;
 use crate::report::predictions::{WatchPredictions, widened};
@@ -14,7 +15,7 @@ use binnacle_analysis::fit::{Observation, check_headings, check_residuals, long_
 use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::Coefficients;
-use binnacle_compass::model::{Caution, Model};
+use binnacle_compass::model::{Caution, Model, ReferenceGrade};
 use binnacle_compass::result::{Epoch, FitError, NoiseLevels, ReferenceCheck, SampleReason};
 use binnacle_compass::ship::{EarthField, PARAMETERS, WEAKEST_H_NT};
 
@@ -29,6 +30,8 @@ pub(crate) struct Fitting<'a> {
     pub(crate) references: &'a References,
     pub(crate) faults: &'a Faults,
     pub(crate) prior: &'a ShipPrior,
+    /// Use of the course over ground; none with a heading reference.
+    pub(crate) course: Option<CourseUse>,
     pub(crate) noise: NoiseLevels,
     /// Standard deviation of one reference's constant error, degrees.
     pub(crate) one_reference_sd_deg: f64,
@@ -75,18 +78,18 @@ impl Fitting<'_> {
             refusal: None,
         };
         let check = match self.references.at(span.own.start) {
-            Ok(check) => self.count_dropped(*check, own),
+            Ok(check) => check.map(|check| self.count_dropped(check, own)),
             Err(refusal) => {
                 let referred = readings[span.own.clone()].iter_mut();
                 for reading in referred.filter(|r| heading_reading(r).is_some()) {
                     let reason = &mut reading.diagnostic.reason;
                     *reason = reason.or(Some(SampleReason::ReferenceFailed));
                 }
-                epoch.refusal = Some(refusal.clone());
+                epoch.refusal = Some(refusal);
                 return epoch;
             }
         };
-        epoch.references = Some(check);
+        epoch.references = check;
         match self.model(spans, place, is_known, readings) {
             Ok(model) => {
                 epoch.noise = Some(self.noise);
@@ -144,17 +147,14 @@ impl Fitting<'_> {
         } else {
             NEEDED_SAMPLES
         };
-        let too_few = FitError::TooFewSamples {
-            found: observations.len() as u64,
-            needed: needed as u64,
-        };
         let Some(ship) = span.ship.filter(|_| observations.len() >= needed) else {
-            return Err(too_few);
+            return Err(self.too_few(observations.len() as u64, needed as u64));
         };
         if !is_known {
             check_headings(&observations)?;
         }
-        let mut model = of_ship(ship);
+        let ship = &self.widened_by_set(ship, &observations);
+        let mut model = self.of_ship(ship);
         model.covariance = model.covariance.map(|covariance| {
             let check = self.predictions.coverage(span.to, self.detected);
             let constant_variance = self.one_reference_sd_deg.powi(2);
@@ -177,6 +177,39 @@ impl Fitting<'_> {
         self.complete(&mut model, &observations, ship, caution);
         count(&mut model, &readings[span.own.clone()], &earlier, before);
         Ok(model)
+    }
+
+    fn too_few(&self, found: u64, needed: u64) -> FitError {
+        match self.course {
+            Some(course) => course.refusal(found, needed),
+            None => FitError::TooFewSamples { found, needed },
+        }
+    }
+
+    /// Returns the ship; by course over ground, with the uncertainty of a lasting set.
+    fn widened_by_set(&self, ship: &ShipState, observations: &[Observation]) -> ShipState {
+        let h_nt = observations.last().map_or(0.0, |o| o.h_nt);
+        let widened = self.course.map(|course| course.widen(ship, h_nt));
+        widened.unwrap_or_else(|| ship.clone())
+    }
+
+    /// Returns the model of a ship's state, without its quality.
+    fn of_ship(&self, ship: &ShipState) -> Model {
+        let seen = ship.in_compass_axes();
+        Model {
+            parameters_over_lambda: seen.parameters(),
+            constant_deg: wrap_180(seen.mean[PARAMETERS]),
+            covariance: Some(seen.covariance),
+            identifiable: None,
+            rms_deg: None,
+            samples_used: 0,
+            samples_rejected: 0,
+            quality: None,
+            reference_grade: match self.course {
+                Some(_) => ReferenceGrade::CourseOverGround,
+                None => ReferenceGrade::Heading,
+            },
+        }
     }
 
     /// Adds quality and cautions to a model.
@@ -248,21 +281,6 @@ fn earlier<'a>(spans: &'a [Span<'a>], place: usize) -> Vec<&'a Span<'a>> {
         next = spans[same].resumes;
     }
     earlier
-}
-
-/// Returns the model of a ship's state, without its quality.
-fn of_ship(ship: &ShipState) -> Model {
-    let seen = ship.in_compass_axes();
-    Model {
-        parameters_over_lambda: seen.parameters(),
-        constant_deg: wrap_180(seen.mean[PARAMETERS]),
-        covariance: Some(seen.covariance),
-        identifiable: None,
-        rms_deg: None,
-        samples_used: 0,
-        samples_rejected: 0,
-        quality: None,
-    }
 }
 
 /// Counts the readings of the epoch, and the residuals of those that were used.

@@ -110,8 +110,7 @@ fn carry(vector: &mut [f64; STATES], transition: &Transition) {
     for (x, keep) in vector.iter_mut().zip(&transition.keep) {
         *x *= keep;
     }
-    let pairs = [Some(&transition.schuler), transition.anomaly.as_ref()];
-    for Pair { state, matrix, .. } in pairs.into_iter().flatten() {
+    for Pair { state, matrix, .. } in transition.pairs() {
         let [value, rate] = [vector[*state], vector[state + 1]];
         for (x, [by_value, by_rate]) in vector[*state..].iter_mut().zip(matrix) {
             *x = by_value * value + by_rate * rate;

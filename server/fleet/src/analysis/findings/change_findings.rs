@@ -188,7 +188,7 @@ impl DisturbedSamples {
 mod tests {
     use super::*;
     use binnacle_analysis::analyse::analyse;
-    use binnacle_compass::model::Parameters;
+    use binnacle_compass::model::{Parameters, ReferenceGrade};
     use binnacle_compass::sample::Sample;
     use binnacle_compass::settings::AnalysisSettings;
 
@@ -215,6 +215,7 @@ mod tests {
             samples_used: 0,
             samples_rejected: 0,
             quality: None,
+            reference_grade: ReferenceGrade::Heading,
         }
     }
 

@@ -70,7 +70,7 @@ impl<'a> Detector<'a> {
     pub(crate) fn new(
         observations: &'a [Observation],
         input: &DetectionInput<'a>,
-        learnt: LearntNoise,
+        learnt: &LearntNoise,
     ) -> Detector<'a> {
         Detector {
             observations,
