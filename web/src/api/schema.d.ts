@@ -6207,6 +6207,8 @@ export interface components {
             /** @description Poisson's parameters over the shielding factor λ. */
             parameters_over_lambda: components["schemas"]["ParametersOverLambda"];
             quality?: components["schemas"]["Quality"] | null;
+            /** @description Source of the true headings behind the model: gyro or satellite compass where absent. */
+            reference_grade?: components["schemas"]["ReferenceGrade"];
             /**
              * Format: double
              * @description Root mean square of the residuals, degrees.
@@ -7800,6 +7802,14 @@ export interface components {
          * @enum {string}
          */
         RedEnd: "forward" | "aft" | "starboard" | "port" | "up" | "down";
+        /**
+         * @description Source of the true headings behind a model.
+         *
+         *     A vessel has one grade: a single heading by gyro or satellite compass is worth more than any
+         *     number of courses over ground.
+         * @enum {string}
+         */
+        ReferenceGrade: "heading" | "course_over_ground";
         /** @description Comparison of a vessel's two references over all samples. */
         References: {
             /**
@@ -7843,6 +7853,39 @@ export interface components {
             readings: number;
             /** @enum {string} */
             reason: "no_reference";
+        } | {
+            /**
+             * Format: int64
+             * @description Number of usable readings.
+             */
+            found: number;
+            /**
+             * Format: double
+             * @description Least usable speed over ground, knots.
+             */
+            least_sog_kn: number;
+            /**
+             * Format: int64
+             * @description Least number of usable readings.
+             */
+            needed: number;
+            /**
+             * Format: int64
+             * @description Number of readings.
+             */
+            readings: number;
+            /** @enum {string} */
+            reason: "no_steady_course";
+            /**
+             * Format: int64
+             * @description Number of readings at too low a speed.
+             */
+            too_slow: number;
+            /**
+             * Format: int64
+             * @description Number of readings in a turn or just after one.
+             */
+            turning: number;
         } | {
             /** @enum {string} */
             reason: "no_weight";
@@ -8417,7 +8460,7 @@ export interface components {
          * @description Reason for the rejection or reduced weight of a sample.
          * @enum {string}
          */
-        SampleReason: "no_reference" | "reference_failed" | "compass_stuck" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "disturbance" | "outlier" | "no_model";
+        SampleReason: "no_reference" | "reference_failed" | "compass_stuck" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "disturbance" | "outlier" | "no_model" | "too_slow_for_course" | "turning_course";
         /** @description The current plan and its state. */
         Schedule: {
             outdated_since: components["schemas"]["Time"] | null;

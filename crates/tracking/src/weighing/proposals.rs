@@ -1,7 +1,7 @@
 //! Proposals of events where innovations suggest them.
 
 use super::records::Tried;
-use super::tracker::Tracker;
+use super::tracker::{DRIFT_ROWS, Tracker};
 use crate::hypotheses::hypothesis::{Begin, Hypothesis};
 use crate::hypotheses::kinds::{KINDS, Kind, KindRow};
 use crate::state_space::row::Row;
@@ -23,8 +23,7 @@ const DRIFT_ANGLE_DEG: f64 = 30.0;
 /// Least time between checkpoints for which an event's prior counts, seconds.
 const LEAST_EXPOSURE_S: f64 = 300.0;
 
-/// Rows after each of which a drift may begin, and the usual time between rows, seconds.
-pub(super) const DRIFT_ROWS: usize = 144;
+/// Usual time between rows, seconds.
 const USUAL_ROW_S: f64 = 600.0;
 
 /// Log likelihood ratio from which a jump is worth a look, and a slow growth.

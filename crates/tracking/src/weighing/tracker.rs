@@ -2,7 +2,6 @@
 
 use super::evidence_sums::EvidenceSums;
 use super::learning::Learning;
-use super::proposals::DRIFT_ROWS;
 use super::records::{Checkpoint, Detected, Tried};
 use crate::hypotheses::hypothesis::{Begin, Hypothesis, Read};
 use crate::hypotheses::kinds::{Kind, Stay};
@@ -24,6 +23,8 @@ const RECENT_ROWS: usize = 12;
 /// Rows between looks for events, and for ends of events.
 const LOOK_ROWS: usize = 2;
 const END_ROWS: usize = 6;
+/// Rows after each of which a drift may begin.
+pub(super) const DRIFT_ROWS: usize = 144;
 /// Greatest time between an azimuth and the row in whose circumstances it is read, seconds.
 const AZIMUTH_NEAR_S: f64 = 6.0 * 3600.0;
 /// Log weight below the best's down to which a hypothesis has branches.

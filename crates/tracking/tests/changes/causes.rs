@@ -132,36 +132,3 @@ pub(crate) fn with_step(mut log: Log, at: Timestamp, [bx_nt, by_nt]: [f64; 2]) -
     }
     log
 }
-
-/// Returns the log with a bx that grows over thirty days.
-fn with_ramp(mut log: Log, from_day: f64, nt: f64) -> Log {
-    let start = log.start;
-    for sample in &mut log.samples {
-        let day = sample.time.seconds_since(start) / DAY_S;
-        let part = ((day - from_day) / 30.0).clamp(0.0, 1.0);
-        let earth = field(FieldModel::Igrf14, sample.position, 0.0, sample.time).unwrap();
-        let bearing = sample.compass.degrees().to_radians();
-        let off = (nt * part * bearing.sin() / earth.h_nt()).to_degrees();
-        sample.compass = CompassHeading::new(sample.compass.degrees() - off).unwrap();
-    }
-    log
-}
-
-#[test]
-fn an_open_cargo_entry_of_weeks_ago_hides_no_drift() {
-    let mut plan = calm(Event::Nothing);
-    plan.days = 70.0;
-    let mut drifts = 0;
-    for (seed, nt) in [(81, 3000.0), (82, 3000.0), (83, -3000.0), (84, 2500.0)] {
-        let log = with_ramp(sail_log(seed, &plan), 25.0, nt);
-        let loaded = log.start.plus_seconds(DAY_S);
-        let open = [entry(LogbookKind::MagneticCargo, loaded, None)];
-        let analysis = with(&log, &open);
-        is_sound(&analysis);
-        let found = of_the_ship(&analysis);
-        drifts += usize::from(found.iter().any(|c| c.cause == Cause::Drift));
-        let struck = |c: &&&Change| c.cause == Cause::LightningOrShock;
-        assert_eq!(found.iter().find(struck), None, "seed {seed}");
-    }
-    assert!(drifts >= 3, "{drifts}");
-}

@@ -242,33 +242,3 @@ fn a_jammed_card_that_trembles_is_a_stuck_compass() {
         assert!(before.count() < 3, "seed {seed}");
     }
 }
-
-#[test]
-fn on_one_course_a_zero_that_moved_may_be_a_strike_and_the_band_holds_either() {
-    let (mut open, mut headings, mut held) = (0, 0, 0);
-    for seed in 60..66 {
-        let moved_deg = 12.0;
-        let (log, moved) = zero_moved(seed, moved_deg);
-        // State three hours later, and before.
-        let analysis = run(&log.samples[..moved + 18]);
-        let reported = certain(&analysis);
-        let zero = reported.iter().flat_map(|c| &c.causes);
-        let zero = zero.filter(|c| c.cause == Cause::Alignment);
-        if zero.map(|c| c.probability).sum::<f64>() > 0.05 {
-            open += 1;
-        }
-        let place = analysis.last_place.unwrap();
-        let epoch = analysis.current_epoch().unwrap();
-        for k in 0..36 {
-            let shown_deg = 10.0 * f64::from(k);
-            let (h, z) = (place.h_nt, place.z_nt);
-            let sound_deg = true_deviation(&log.truth, shown_deg - moved_deg, h, z);
-            let (predicted_deg, se_deg) = predicted(epoch.model.as_ref().unwrap(), shown_deg, h, z);
-            let off_deg = wrap_180(sound_deg - moved_deg - predicted_deg).abs();
-            headings += 1;
-            held += usize::from(off_deg < 1.96 * se_deg);
-        }
-    }
-    assert!(open >= 5, "{open}");
-    assert!(10 * held > 9 * headings, "{held} of {headings}");
-}
