@@ -127,7 +127,7 @@ fn while_a_vessel_lies_alongside_the_error_may_be_the_berths_or_its_own() {
 
 #[test]
 fn cargo_loaded_during_a_stay_with_samples_begins_in_port() {
-    for seed in [48, 50, 51] {
+    for seed in [43, 48, 51] {
         let mut log = sail_log(seed, &calm(Event::Cargo));
         let loaded = began(&log, Name::Cargo).plus_seconds(5.0 * HOUR_S);
         let [before, after] = log.changed.unwrap();
