@@ -202,7 +202,15 @@ fn sample_of(ship: &Model, position: Position, time: Timestamp, heading_deg: f64
 pub fn passage(from: &str, samples: usize) -> Vec<Sample> {
     let start = Timestamp::parse(from).unwrap();
     (0..samples)
-        .map(|i| sample(start.plus_seconds(600.0 * i as f64), 37.0 * i as f64))
+        .map(|i| {
+            let mut sample = sample(start.plus_seconds(600.0 * i as f64), 37.0 * i as f64);
+            // Independent instruments never agree to the last digit.
+            let off = |sign: u32| 0.15 * unevenness(2 * i as u32 + sign);
+            let compass_deg = sample.compass.degrees() + off(0);
+            sample.compass = CompassHeading::new(compass_deg).unwrap();
+            sample.gyro = TrueHeading::new(sample.gyro.unwrap().degrees() + off(1));
+            sample
+        })
         .collect()
 }
 
