@@ -158,7 +158,7 @@ impl Voyage {
                 time: reading.sample().time,
                 innovation_deg: tracked.read.deviation.value,
                 z_squared: tracked.read.deviation.z_squared(),
-                after_port: tracked.after_port,
+                after_port: tracked.row.after_port,
             });
         }
     }

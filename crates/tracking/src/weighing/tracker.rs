@@ -59,8 +59,6 @@ pub(crate) struct Tracker {
 /// Row as the lead predicted and read it.
 pub(crate) struct Tracked {
     pub(crate) read: Read,
-    /// True if the ship was in port since the row before.
-    pub(crate) after_port: bool,
     pub(crate) row: Row,
 }
 
@@ -235,7 +233,6 @@ impl Tracker {
         self.sums.add(row, &read);
         Tracked {
             read,
-            after_port: row.after_port,
             row: row.clone(),
         }
     }
