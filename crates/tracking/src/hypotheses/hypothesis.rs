@@ -81,6 +81,13 @@ pub(crate) struct Supposed {
     pub(crate) probability: f64,
 }
 
+impl Supposed {
+    /// Returns true if the hypothesis rather has the event than not.
+    pub(crate) fn is_likely(&self) -> bool {
+        self.probability > 0.5
+    }
+}
+
 impl Deref for Supposed {
     type Target = Event;
 

@@ -2,6 +2,7 @@
 
 use crate::state_space::row::Row;
 use crate::state_space::states::{ALIGNMENT, ANOMALY, BX, BY, GROWTH, GYRO, SATELLITE, SETTLING};
+use binnacle_analysis::estimate::POPULATION_SD;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 
@@ -124,7 +125,7 @@ const fn jump(state: usize, sd: f64) -> Jump {
 }
 
 /// Growth of a drifting ship's (bx, by) a day, in units of the population: 2 µT in thirty days.
-const GROWTH_SD: f64 = 2000.0 / 1500.0 / 30.0;
+const GROWTH_SD: f64 = 2000.0 / POPULATION_SD[BX] / 30.0;
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;
 const YEAR_S: f64 = 365.25 * DAY_S;

@@ -10,6 +10,8 @@ use binnacle_compass::time::Timestamp;
 /// Seconds within which two accounts speak of the same event: at most, and at least.
 const SAME_EVENT_S: f64 = 86_400.0;
 const LEAST_WINDOW_S: f64 = 1200.0;
+/// Posterior probability from which a date of an event is credible.
+const DATED: f64 = 0.02;
 /// Posterior probability from which an event is suspected.
 const SUSPECTED: f64 = 0.5;
 /// Posterior probability below which a detected event is withdrawn.
@@ -63,7 +65,7 @@ impl<'a> Marginals<'a> {
     fn window_s(&self, class: Class, from: Timestamp) -> f64 {
         // The nearest is the event itself.
         let mut nearest = [f64::INFINITY; 2];
-        for event in self.bank[0].events.iter().filter(|e| e.probability > 0.5) {
+        for event in self.bank[0].events.iter().filter(|e| e.is_likely()) {
             let apart = event.from.seconds_since(from).abs();
             if Class::of(event.kind) == class && apart < nearest[1] {
                 nearest = [nearest[0].min(apart), nearest[0].max(apart)];
@@ -86,7 +88,7 @@ impl<'a> Marginals<'a> {
                     && detected.event.from.seconds_since(event.from).abs() <= window_s
             })
         };
-        let likely = self.bank[0].events.iter().filter(|e| e.probability > 0.5);
+        let likely = self.bank[0].events.iter().filter(|e| e.is_likely());
         let events = likely.map(|supposed| supposed.event.as_ref());
         let judged = events.filter(move |event| now.seconds_since(event.from) <= SETTLED_S);
         judged.filter_map(move |event| {
@@ -131,7 +133,7 @@ impl<'a> Marginals<'a> {
                         (likeliest_end, found.end) = (weight, Some(end));
                     }
                 }
-                if weight > 0.02 {
+                if weight > DATED {
                     found.earliest = found.earliest.min(event.from);
                     found.latest = found.latest.max(event.from);
                 }
@@ -176,7 +178,7 @@ fn nearest(
     from: Timestamp,
     within_s: f64,
 ) -> Option<&Event> {
-    let likely = within(hypothesis, is_meant, from, within_s).filter(|e| e.probability > 0.5);
+    let likely = within(hypothesis, is_meant, from, within_s).filter(|e| e.is_likely());
     let apart = |e: &Event| e.from.seconds_since(from).abs();
     let events = likely.map(|supposed| supposed.event.as_ref());
     events.min_by(|a: &&Event, b| apart(a).total_cmp(&apart(b)))

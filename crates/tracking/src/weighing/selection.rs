@@ -118,7 +118,7 @@ impl Tracker {
 
 /// Returns the events that a hypothesis supposes, without those that it only may have.
 fn likely(hypothesis: &Hypothesis) -> impl Iterator<Item = &Supposed> {
-    hypothesis.events.iter().filter(|e| e.probability > 0.5)
+    hypothesis.events.iter().filter(|e| e.is_likely())
 }
 
 /// Returns true if two hypotheses suppose the same events.
