@@ -3,6 +3,7 @@ import { describe, expect, test } from 'vitest';
 import type { AgentStream, Change, SailNext, FleetVessel, Timeline } from '../api/types';
 import AgentPanel from './AgentPanel.svelte';
 import SailNextPanel from './SailNextPanel.svelte';
+import TimeLanes from './timeline/TimeLanes.svelte';
 import TimelinePanel from './TimelinePanel.svelte';
 import FleetRow from './fleet/FleetRow.svelte';
 import Worst from './Worst.svelte';
@@ -308,5 +309,27 @@ describe('the timeline', () => {
     const said = shown({ ...calm, changes: [fault] });
     expect(said).toContain('Gyro or satellite compass at fault not certain yet over since 9 Nov');
     expect(said).toContain('As far as can be told yet, the ship’s own magnetism did not change.');
+  });
+});
+
+describe('the lanes of the time axis', () => {
+  const call = {
+    key: 'call',
+    lane: 'calls' as const,
+    fromMs: 400,
+    toMs: 600,
+    title: 'Rotterdam',
+    when: '9 Nov',
+    more: '',
+    at: '',
+    grave: false,
+  };
+  const range = { fromMs: 0, toMs: 1000 };
+
+  test('have no marks before their width is known: they would be wider than the page', () => {
+    const props = { marks: [call], range, chosen: null, choose: () => undefined };
+    const { body } = render(TimeLanes, { props });
+    expect(body).toContain('time-lanes');
+    expect(body).not.toContain('Rotterdam');
   });
 });
