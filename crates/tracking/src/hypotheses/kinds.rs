@@ -180,14 +180,14 @@ pub(crate) const KINDS: [KindRow; 13] = [
         kind: Kind::GyroStep,
         a_year: 0.5,
         a_call: 0.005,
-        jumps: &[jump(GYRO, 4.0)],
+        jumps: &[jump(GYRO, 6.0)],
         ending: Ending::After(3.0 * DAY_S),
     },
     KindRow {
         kind: Kind::SatelliteStep,
         a_year: 0.2,
         a_call: 0.005,
-        jumps: &[jump(SATELLITE, 4.0)],
+        jumps: &[jump(SATELLITE, 6.0)],
         ending: Ending::After(3.0 * DAY_S),
     },
     KindRow {
@@ -281,6 +281,15 @@ impl Kind {
     /// Returns true for an event that moves something at once.
     pub(crate) fn is_sudden(self) -> bool {
         !self.row().jumps.is_empty() && self != Kind::ShipDrift
+    }
+
+    /// Returns the seconds within which the beginning of such an event can be told: what grows
+    /// is seen when it is large.
+    pub(crate) fn dated_within_s(self) -> f64 {
+        match self {
+            Kind::ShipDrift => 10.0 * DAY_S,
+            _ => DAY_S,
+        }
     }
 
     /// Returns true for an event that moves a reference.

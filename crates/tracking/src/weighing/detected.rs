@@ -7,8 +7,7 @@ use crate::hypotheses::hypothesis::{Event, Hypothesis, Supposed};
 use crate::hypotheses::kinds::Kind;
 use binnacle_compass::time::Timestamp;
 
-/// Seconds within which two accounts speak of the same event: at most, and at least.
-const SAME_EVENT_S: f64 = 86_400.0;
+/// Seconds within which two accounts speak of the same event, at least.
 const LEAST_WINDOW_S: f64 = 1200.0;
 /// Posterior probability from which a date of an event is credible.
 const DATED: f64 = 0.02;
@@ -61,8 +60,9 @@ impl<'a> Marginals<'a> {
     }
 
     /// Returns the seconds within which accounts speak of the same event: half of those to the
-    /// lead's next of its class, a day at most.
-    fn window_s(&self, class: Class, from: Timestamp) -> f64 {
+    /// lead's next of its class, and no more than its kind is dated within.
+    fn window_s(&self, kind: Kind, from: Timestamp) -> f64 {
+        let class = Class::of(kind);
         // The nearest is the event itself.
         let mut nearest = [f64::INFINITY; 2];
         for event in self.bank[0].events.iter().filter(|e| e.is_likely()) {
@@ -71,7 +71,7 @@ impl<'a> Marginals<'a> {
                 nearest = [nearest[0].min(apart), nearest[0].max(apart)];
             }
         }
-        (nearest[1] / 2.0).clamp(LEAST_WINDOW_S, SAME_EVENT_S)
+        (nearest[1] / 2.0).clamp(LEAST_WINDOW_S, kind.dated_within_s())
     }
 
     /// Returns the lead's events that are not among those detected.
@@ -81,7 +81,7 @@ impl<'a> Marginals<'a> {
         now: Timestamp,
     ) -> impl Iterator<Item = Judged<'a>> {
         let is_known = move |event: &Event, class: Class| {
-            let window_s = self.window_s(class, event.from);
+            let window_s = self.window_s(event.kind, event.from);
             detected.iter().any(|detected| {
                 detected.class == class
                     && detected.withdrawn.is_none()
@@ -95,19 +95,20 @@ impl<'a> Marginals<'a> {
             let class = Class::of(event.kind);
             (!is_known(event, class)).then(|| Judged {
                 event,
-                posterior: self.event(class, event.from),
+                posterior: self.event(event.kind, event.from),
             })
         })
     }
 
-    /// Returns the lead's event of a class at about a time.
-    fn leads(&self, class: Class, from: Timestamp) -> Option<&'a Event> {
-        let is_meant = |other| other == class;
-        nearest(&self.bank[0], is_meant, from, self.window_s(class, from))
+    /// Returns the lead's event of a kind's class at about a time.
+    fn leads(&self, kind: Kind, from: Timestamp) -> Option<&'a Event> {
+        let is_meant = |other| other == Class::of(kind);
+        nearest(&self.bank[0], is_meant, from, self.window_s(kind, from))
     }
 
-    /// Returns the posterior of an event of a class at about a time.
-    fn event(&self, class: Class, from: Timestamp) -> EventPosterior {
+    /// Returns the posterior of an event of a kind's class at about a time.
+    fn event(&self, kind: Kind, from: Timestamp) -> EventPosterior {
+        let class = Class::of(kind);
         let mut found = EventPosterior {
             probability: 0.0,
             kinds: Vec::new(),
@@ -118,7 +119,7 @@ impl<'a> Marginals<'a> {
             earliest: from,
             latest: from,
         };
-        let within_s = self.window_s(class, from);
+        let within_s = self.window_s(kind, from);
         let mut likeliest_end = 0.0;
         for (hypothesis, weight) in self.bank.iter().zip(&self.weights) {
             let mut sum = 0.0;
@@ -193,11 +194,11 @@ impl Tracker {
             if detected.withdrawn.is_some() || !(is_open || detected.event.until.is_none()) {
                 continue;
             }
-            let found = marginals.event(detected.class, detected.event.from);
+            let found = marginals.event(detected.event.kind, detected.event.from);
             if is_open && found.probability < WITHDRAWN {
                 detected.withdrawn = Some(now);
             } else if found.probability > 0.5
-                && let Some(event) = marginals.leads(detected.class, detected.event.from)
+                && let Some(event) = marginals.leads(detected.event.kind, detected.event.from)
             {
                 detected.event.until = event.until;
                 detected.event.ship_at_end.clone_from(&event.ship_at_end);
