@@ -272,6 +272,14 @@ impl Hypothesis {
         self.filter.log_likelihood -= 0.5 * loss.min(WORST_LOSS);
     }
 
+    /// Returns the filter after a port call like her others.
+    pub(crate) fn after_call(&self, levels: &Levels) -> Filter {
+        let lively = self.lively.map(|level| levels.of_lively(level));
+        let mut filter = self.filter.clone();
+        filter.advance(&Transition::by_call(lively.as_ref().unwrap_or(levels)));
+        filter
+    }
+
     /// Returns true if an instrument is stuck without which the row shows no deviation.
     fn holds(&self, row: &Row) -> bool {
         let is_alone = row.gyro_deg.is_none() || row.satellite_deg.is_none();

@@ -283,8 +283,8 @@ impl Kind {
         !self.row().jumps.is_empty() && self != Kind::ShipDrift
     }
 
-    /// Returns the seconds within which the beginning of such an event can be told: what grows
-    /// is seen when it is large.
+    /// Returns the seconds within which such an event can be dated: what grows is seen when it is
+    /// large.
     pub(crate) fn dated_within_s(self) -> f64 {
         match self {
             Kind::ShipDrift => 10.0 * DAY_S,

@@ -37,6 +37,7 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
     let detected = merge_overlapping(&tracker.detected);
     let suspected = merge_overlapping(&tracker.suspected());
     let current = tracker.current_ship();
+    let until_sailing = tracker.ship_until_sailing();
     let times = RowTimes::new(&voyage.rows, logbook);
 
     let faults = Faults::new(&detected, &suspected, times.last());
@@ -48,7 +49,7 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
     record_faults(&mut readings, &references, &faults);
 
     let boundaries = Boundaries::collect(&voyage.works, &detected, &times, logbook);
-    let spans = spans(&boundaries, current.as_ref(), &readings);
+    let spans = spans(&boundaries, until_sailing.as_ref(), &readings);
     include_laden(&spans, &mut readings);
     let contradicted = include_contradicted(&spans, &mut readings, logbook);
     let fitting = Fitting {

@@ -81,16 +81,28 @@ pub(crate) struct Pair {
 }
 
 impl Transition {
-    /// Returns the transition to a row.
-    pub(crate) fn to(row: &Row, levels: &Levels) -> Transition {
-        let mut t = Transition {
+    /// Returns the transition that changes nothing.
+    fn none() -> Transition {
+        Transition {
             keep: [1.0; STATES],
             added: [0.0; STATES],
             schuler: None,
             current: None,
             anomaly: None,
             gains: [None; 2],
-        };
+        }
+    }
+
+    /// Returns the transition by a port call in no time.
+    pub(crate) fn by_call(levels: &Levels) -> Transition {
+        let mut t = Transition::none();
+        t.step(levels.at(Level::PortStep).powi(2), 1.0);
+        t
+    }
+
+    /// Returns the transition to a row.
+    pub(crate) fn to(row: &Row, levels: &Levels) -> Transition {
+        let mut t = Transition::none();
         let seconds = row.seconds;
         let turned = row.turned_deg.abs();
         if row.course.is_some() {

@@ -156,26 +156,32 @@ impl Tracker {
 
     /// Returns the ship by all hypotheses.
     pub(super) fn ship(&self, row: &Row) -> ShipState {
+        self.mixed(|hypothesis| ShipState::from_filter(&hypothesis.filter, row))
+    }
+
+    /// Returns the mixture of the ships of plausible hypotheses.
+    fn mixed(&self, ship: impl Fn(&Hypothesis) -> ShipState) -> ShipState {
         let best = self.best();
-        let plausible = self
-            .bank
-            .iter()
-            .filter(|h| h.log_weight() > best - NEGLIGIBLE);
-        let weighed: Vec<(f64, ShipState)> = plausible
-            .map(|h| {
-                (
-                    (h.log_weight() - best).exp(),
-                    ShipState::from_filter(&h.filter, row),
-                )
-            })
-            .collect();
-        let (weights, states): (Vec<f64>, Vec<ShipState>) = weighed.into_iter().unzip();
+        let bank = self.bank.iter();
+        let plausible = bank.filter(|h| h.log_weight() > best - NEGLIGIBLE);
+        let weighed = plausible.map(|h| ((h.log_weight() - best).exp(), ship(h)));
+        let (weights, states): (Vec<f64>, Vec<ShipState>) = weighed.unzip();
         ShipState::mixed(&states, &weights)
     }
 
     /// Returns the ship after the last row, if there was one.
     pub(crate) fn current_ship(&self) -> Option<ShipState> {
         self.rows.back().map(|row| self.ship(row))
+    }
+
+    /// Returns the ship from the last row until she has sailed from her next port, what a call
+    /// does to her included, if there was a row.
+    pub(crate) fn ship_until_sailing(&self) -> Option<ShipState> {
+        let row = self.rows.back()?;
+        Some(self.mixed(|hypothesis| {
+            let filter = hypothesis.after_call(self.levels());
+            ShipState::from_filter(&filter, row)
+        }))
     }
 
     fn keep_checkpoint(&mut self, row: &Row) {

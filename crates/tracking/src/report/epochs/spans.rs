@@ -34,7 +34,7 @@ struct Lasting {
     ended: usize,
 }
 
-/// Returns the epochs between boundaries; `current` is the ship after the last row.
+/// Returns the epochs between boundaries; `current` is the ship from the last row on.
 pub(crate) fn spans<'a>(
     boundaries: &Boundaries<'a>,
     current: Option<&'a ShipState>,
