@@ -89,6 +89,46 @@ fn a_strike_is_found_within_a_day_and_begins_an_epoch() {
 }
 
 #[test]
+fn a_steady_drift_is_one_change_and_named() {
+    for seed in [4_000_000, 4_000_001] {
+        let mut plan = Plan::new(Event::Ramp(2000.0, 20.0), Variety::Rich);
+        plan.gyro_faults = 0.0;
+        let log = sail_log(seed, &plan);
+        let began = log.happened.iter().find(|h| h.what == Name::Ramp).unwrap();
+        let analysis = run(&log.samples);
+        let changes = ship_changes(&analysis);
+        assert_eq!(changes.len(), 1, "{seed}: {:?}", analysis.changes);
+        assert_eq!(changes[0].cause, Cause::Drift);
+        let late_s = changes[0].from.seconds_since(began.from);
+        assert!(late_s.abs() < 10.0 * 86_400.0, "{seed}: {late_s}");
+    }
+}
+
+#[test]
+fn the_band_of_a_ship_that_changes_at_each_call_is_wider_than_a_plain_ships() {
+    let band_deg = |load_step_nt: f64| {
+        let mut plan = Plan::new(Event::Nothing, Variety::Poor);
+        plan.days = 120.0;
+        plan.gyro_faults = 0.0;
+        plan.habits.load_step_nt = load_step_nt;
+        let log = sail_log(7, &plan);
+        let analysis = run(&log.samples);
+        let model = analysis.current_epoch().unwrap().model.as_ref().unwrap();
+        let (h_nt, z_nt) = (log.truth.h_nt, log.truth.z_nt);
+        let bands = (0..36).map(|k| predicted(model, 10.0 * f64::from(k), h_nt, z_nt).1);
+        let squares: f64 = bands.map(|band| band * band).sum();
+        (squares / 36.0, h_nt)
+    };
+    let ((plain, h_nt), (lively, _)) = (band_deg(0.0), band_deg(300.0));
+    // A call's step of bx or by, 0.3 µT, as an angle: half of its square at the least.
+    let step_deg = (300.0 / h_nt).to_degrees();
+    assert!(
+        lively - plain > 0.5 * step_deg * step_deg,
+        "{plain} {lively}"
+    );
+}
+
+#[test]
 fn a_gyro_that_steps_is_named_and_the_ship_is_not() {
     let log = sail(3, Event::GyroFault(4.0), 30.0);
     let analysis = run(&log.samples);
