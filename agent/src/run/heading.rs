@@ -75,6 +75,7 @@ impl Agent {
             age_days: Some(now.seconds_since(model.data_until).max(0.0) / 86_400.0),
             withdrawn,
             replaces: model.replaces.clone(),
+            reference_grade: model.model.reference_grade,
         })
     }
 }

@@ -17,6 +17,12 @@ pub(crate) struct Details {
     pub(super) temperature_c: Option<f64>,
 }
 
+impl Details {
+    pub(super) fn has_course(&self) -> bool {
+        self.cog.is_some()
+    }
+}
+
 /// Roll in one window. The mean square gives the spread over several windows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Roll {

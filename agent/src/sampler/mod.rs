@@ -6,6 +6,8 @@
 //!   first reason that applies.
 //! - Samples contain accepted windows only, each of them at most once.
 //! - The compass heading is the raw reading; no deviation is applied to it.
+//! - Windows without gyro and satellite compass count on a ship that has had neither for an hour,
+//!   if they have a course over ground.
 //! - No signal causes a panic, in any order and with any time.
 //!
 //! After a turn, eddy currents in the hull and the liquid in the bowl disturb the compass for two
@@ -42,6 +44,9 @@ const MIN_READINGS: u32 = 4;
 const TURN_DEG: f64 = 10.0;
 /// Windows without a heading above which there may have been a turn.
 const MAX_BLIND_WINDOWS: i64 = 3;
+/// Windows without gyro and satellite compass from which the ship counts as one that has neither,
+/// an hour: then her course over ground is the reference.
+const UNREFERENCED_WINDOWS: i64 = 360;
 /// Windows for which a position or speed is valid.
 const FIX_VALID_WINDOWS: i64 = 2;
 const WINDOW_MICROS: i64 = WINDOW_S * 1_000_000;
@@ -64,6 +69,8 @@ pub(crate) struct Sampler {
     position: Option<LastValue<Position>>,
     speed: Option<LastValue<f64>>,
     turns: TurnTracker,
+    /// Last window with gyro or satellite compass; the first window before there is one.
+    referenced: Option<i64>,
     builder: SampleBuilder,
     samples: Vec<Sample>,
     settled: Vec<Window>,
@@ -96,6 +103,7 @@ impl Sampler {
             position: None,
             speed: None,
             turns: TurnTracker::default(),
+            referenced: None,
             builder: SampleBuilder::default(),
             samples: Vec::new(),
             settled: Vec::new(),
@@ -210,6 +218,7 @@ impl Sampler {
         self.position = None;
         self.speed = None;
         self.turns = TurnTracker::default();
+        self.referenced = None;
     }
 
     fn close(&mut self, index: i64) {
@@ -238,12 +247,15 @@ impl Sampler {
         let rate = self.rate_of_turn_deg_min();
         let turning = rate.is_some_and(|r| r.abs() > self.settings.max_rate_of_turn_deg_min);
         let settled = self.track_turns(index, turning);
+        self.note_reference(index);
         if let Some(exclusion) = self.exclusion {
             return Err(exclusion.outcome());
         }
         let compass = self.compass.span().ok_or(Outcome::NoCompass)?;
         let (gyro, satellite) = (self.gyro.span(), self.satellite.span());
-        if gyro.or(satellite).is_none() {
+        let details = self.details.means();
+        let by_course = gyro.or(satellite).is_none();
+        if by_course && !(self.is_unreferenced(index) && details.has_course()) {
             return Err(Outcome::NoReference);
         }
         let position = LastValue::if_fresh(self.position, index).ok_or(Outcome::NoPosition)?;
@@ -252,7 +264,7 @@ impl Sampler {
         }
         let enough = |span: &HeadingSpan| span.readings >= MIN_READINGS;
         let (gyro, satellite) = (gyro.filter(enough), satellite.filter(enough));
-        if !enough(&compass) || gyro.or(satellite).is_none() {
+        if !enough(&compass) || (!by_course && gyro.or(satellite).is_none()) {
             return Err(Outcome::Sparse);
         }
         let sog_kn = LastValue::if_fresh(self.speed, index).ok_or(Outcome::NoSpeed)?;
@@ -277,10 +289,24 @@ impl Sampler {
             position,
             sog_kn,
             rate_of_turn_deg_min: rate,
-            details: self.details.means(),
+            details,
             gyro_source: gyro.and(self.gyro.source()),
             satellite_source: satellite.and(self.satellite.source()),
         })
+    }
+
+    /// Records that a window has gyro or satellite compass.
+    fn note_reference(&mut self, index: i64) {
+        let has_reference = self.gyro.span().or(self.satellite.span()).is_some();
+        if has_reference || self.referenced.is_none() {
+            self.referenced = Some(index);
+        }
+    }
+
+    /// Returns true if the ship has had neither gyro nor satellite compass for long.
+    fn is_unreferenced(&self, index: i64) -> bool {
+        let since = self.referenced.unwrap_or(index);
+        index - since >= UNREFERENCED_WINDOWS
     }
 
     /// Records turns and gaps. Returns whether the compass has come to rest.

@@ -42,6 +42,13 @@ pub(crate) struct Window {
     pub(crate) satellite_source: Option<SourceId>,
 }
 
+impl Window {
+    /// Returns true if gyro or satellite compass was read, and not the course over ground alone.
+    fn has_reference(&self) -> bool {
+        self.gyro_deg.or(self.satellite_deg).is_some()
+    }
+}
+
 /// Settled windows of a sample in order of time, all on one heading.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SampleBuilder {
@@ -86,6 +93,7 @@ impl SampleBuilder {
             && self.windows.len() < usize::from(u16::MAX)
             && window.index - last.index <= MAX_GAP_WINDOWS
             && wrap_180(window.compass_deg - first.compass_deg).abs() <= MAX_HEADING_CHANGE_DEG
+            && first.has_reference() == window.has_reference()
             && !self.changes_source(window)
     }
 

@@ -268,6 +268,64 @@ fn course_roll_and_temperature_come_with_the_headings() {
     assert_eq!(found.satellite_source, None);
 }
 
+/// One second of a vessel with compass and GNSS receiver alone.
+fn second_without_reference(time_s: i64) -> Vec<Signal> {
+    let mut signals = second(time_s, 90.0);
+    signals.pop();
+    signals.push(course(94.0));
+    signals
+}
+
+#[test]
+fn a_ship_without_gyro_and_satellite_compass_is_sampled_by_her_course() {
+    let mut sampler = sampler();
+    for time in 0..7201 {
+        feed(&mut sampler, second_without_reference(time));
+    }
+    let (samples, tally) = finished(sampler);
+    assert_eq!(tally.count(Outcome::NoReference), 360);
+    assert_eq!(tally.count(Outcome::Accepted), 360);
+    let found = &samples[0];
+    assert!((found.compass.degrees() - 87.0).abs() < 1e-9);
+    assert!((found.cog.unwrap().degrees() - 94.0).abs() < 1e-9);
+    assert_eq!((found.gyro, found.satellite), (None, None));
+}
+
+#[test]
+fn a_gyro_that_is_off_for_half_an_hour_leaves_a_gap_and_no_courses() {
+    let mut sampler = sampler();
+    for time in 0..5401 {
+        let mut signals = if (1800..3600).contains(&time) {
+            second_without_reference(time)
+        } else {
+            second(time, 90.0)
+        };
+        signals.push(course(94.0));
+        feed(&mut sampler, signals);
+    }
+    let (samples, tally) = finished(sampler);
+    assert_eq!(tally.count(Outcome::NoReference), 180);
+    assert!(samples.iter().all(|sample| sample.gyro.is_some()));
+}
+
+#[test]
+fn a_sample_by_course_ends_where_the_gyro_is_read_again() {
+    let mut sampler = sampler();
+    for time in 0..4501 {
+        let signals = if time < 4203 {
+            second_without_reference(time)
+        } else {
+            second(time, 90.0)
+        };
+        feed(&mut sampler, signals);
+    }
+    let (samples, _) = finished(sampler);
+    let last = samples.last().unwrap();
+    assert_eq!((last.windows, last.cog), (30, None));
+    let by_course = &samples[..samples.len() - 1];
+    assert!(by_course.iter().all(|sample| sample.gyro.is_none()));
+}
+
 #[test]
 fn what_no_instrument_gives_is_absent() {
     let mut sampler = sampler();

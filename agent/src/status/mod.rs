@@ -13,6 +13,7 @@ use crate::sampler::Exclusion;
 use crate::spool::{BudgetAccount, SpoolStatus};
 use crate::uplink::LinkStatus;
 use binnacle_compass::angle::TrueHeading;
+use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::CardWithdrawn;
@@ -80,6 +81,15 @@ pub(crate) struct ModelStatus {
     /// Reason why no card from before its epoch is valid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) replaces: Option<CardWithdrawn>,
+    /// Source of the true headings that it was fitted to.
+    #[serde(default, skip_serializing_if = "ReferenceGrade::is_heading")]
+    pub(crate) reference_grade: ReferenceGrade,
+}
+
+impl ModelStatus {
+    /// Notice of a model by course over ground alone.
+    pub(crate) const BY_COURSE: &str =
+        "by course over ground alone: no gyro or satellite compass checks it";
 }
 
 /// State of an input; counts are since the agent started.

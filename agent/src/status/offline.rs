@@ -34,6 +34,7 @@ pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
             age_days: None,
             withdrawn,
             replaces: model.replaces,
+            reference_grade: model.model.reference_grade,
         }),
         exclusion: spool.exclusion().await?,
         link: LinkStatus {

@@ -1,6 +1,6 @@
 //! The status as text for a terminal.
 
-use super::{InputReport, Status};
+use super::{InputReport, ModelStatus, Status};
 use binnacle_wire::alert::ShipAlertState;
 use binnacle_wire::messages::CardWithdrawn;
 use std::fmt::Write;
@@ -46,6 +46,9 @@ impl Status {
                     "model      version {}, data until {}{age}",
                     model.version, model.data_until
                 )?;
+                if !model.reference_grade.is_heading() {
+                    writeln!(out, "           {}", ModelStatus::BY_COURSE)?;
+                }
                 if let Some(withdrawn) = &model.withdrawn {
                     writeln!(out, "           {withdrawn}: not in use")?;
                     writeln!(out, "           {}", CardWithdrawn::ADVICE)?;

@@ -148,6 +148,8 @@ impl AlertMonitor {
 
     fn compare(&self, window: &Window, card: ActiveCard<'_>, now: Timestamp) -> Option<Departure> {
         let model = card.in_use()?;
+        // A course over ground alone checks nothing: current sets her as far as the band is wide.
+        let reference_deg = window.gyro_deg.or(window.satellite_deg)?;
         if now.seconds_since(model.data_until) < -MAX_CLOCK_LAG_S {
             return None;
         }
@@ -162,10 +164,9 @@ impl AlertMonitor {
             withheld: false,
         });
         let true_deg = corrected.true_deg?.degrees();
-        let departure = |reference_deg: f64| wrap_180(true_deg - reference_deg);
+        let departure = |heading_deg: f64| wrap_180(true_deg - heading_deg);
         // Heading of the reference: a faulty compass reads another heading on the same course.
-        let reference = window.gyro_deg.or(window.satellite_deg);
-        let heading_deg = reference.unwrap_or(true_deg);
+        let heading_deg = reference_deg;
         let lat_deg = window.position.lat_deg().abs().min(MAX_LAT_DEG);
         let gyro_error_deg = self.config.gyro_error_deg.0 / lat_deg.to_radians().cos();
         let band_deg = corrected.band95_deg.unwrap_or(DEFAULT_BAND_DEG);
