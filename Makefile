@@ -6,7 +6,7 @@ CARGO ?= cargo
 # What has tests, and the programs that tests drive: benchmarks and studies are no part of it.
 TESTED := --lib --bins --tests --example changes_baselines
 
-.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak bench bench-link bench-formats bench-peer bench-changes bench-web study study-adjust study-changes study-ships study-losses methods clean
+.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak bench bench-link bench-formats bench-peer bench-changes bench-web study study-adjust study-ships study-losses methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -62,7 +62,7 @@ soak: web ## The long tests: many kills, many voyages
 	@PHASES=examples,coverage,fuzzing,stateful CASES=200 scripts/fuzz-api
 
 bench: setup ## Run the benchmarks of BENCHMARKS.md
-	$(CARGO) bench --locked -p binnacle-compass -p binnacle-analysis -p binnacle-adjustment -p binnacle-nmea -p binnacle-wire --bench '*'
+	$(CARGO) bench --locked -p binnacle-compass -p binnacle-analysis -p binnacle-tracking -p binnacle-adjustment -p binnacle-nmea -p binnacle-wire --bench '*'
 
 bench-link: setup ## Count the bytes of a simulated month over a satellite, by profile
 	$(CARGO) build --locked --workspace
@@ -78,11 +78,8 @@ study: setup ## Measure the estimator on many voyages: coverage, error over the 
 study-adjust: setup ## Measure plans of adjustments on simulated ships and binnacles
 	$(CARGO) run --locked --release -p binnacle-adjustment --example adjust_study
 
-study-changes: setup ## Measure how changes are found on simulated fleets: delay, false alarms
-	$(CARGO) run --locked --release -p binnacle-analysis --example changes_study
-
-study-ships: setup ## Measure a detector on ships with habits and faults of every kind
-	$(CARGO) run --locked --release -p binnacle-tracking --example real_ships_study -- old
+study-ships: setup ## Measure changes and bands on ships with habits and faults of every kind
+	$(CARGO) run --locked --release -p binnacle-tracking --example real_ships_study -- --threads 2
 
 study-losses: setup ## Measure what rounding and thinning cost the estimator
 	$(CARGO) run --locked --release -p binnacle-wire --example losses

@@ -1,7 +1,7 @@
 //! Analysis worker: takes jobs from the queue, one after the other.
 
 use binnacle_analysis::advice::sail_next;
-use binnacle_analysis::analyse::analyse;
+use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_fleet::analysis::Findings;
 use binnacle_fleet::analysis::{AnalysisResult, Covered, input, store};
 use binnacle_fleet::{alerts, analysis_queue, compasses, settings};
@@ -11,6 +11,7 @@ use binnacle_platform::error::{Error, Result};
 use binnacle_platform::events;
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
+use binnacle_tracking::analyse;
 use metrics::{counter, histogram};
 use std::convert::Infallible;
 use std::time::{Duration, Instant};
@@ -166,11 +167,18 @@ async fn analyse_compass(
         if input.samples.is_empty() || last_hash.as_ref() == Some(&input_hash) {
             return Ok(None);
         }
-        let analysis = analyse(&input.samples, &input.logbook, &input.settings);
+        let analysis = analyse(&binnacle_tracking::Input {
+            samples: &input.samples,
+            logbook: &input.logbook,
+            azimuths: &input.azimuths,
+            prior: &ShipPrior::population(),
+            settings: input.settings,
+        });
         let covered = Covered {
             coverage: analysis.coverage.clone(),
             sail_next: sail_next(&analysis),
             references: analysis.current_epoch().and_then(|epoch| epoch.references),
+            predictions: analysis.predictions,
         };
         Ok(Some(AnalysisResult {
             vessel_id,

@@ -1,5 +1,4 @@
-//! Benchmarks of a fit and of a whole analysis: sixty days, and a year and more, of
-//! ten-minute samples.
+//! Benchmarks of a fit: sixty days, and a year and more, of ten-minute samples.
 
 #![allow(missing_docs)] // divan's attribute makes public items
 #![allow(clippy::unwrap_used)] // as the voyages that it sails
@@ -8,16 +7,9 @@
 #[allow(dead_code)]
 mod voyages;
 
-use binnacle_analysis::analyse::analyse;
-use binnacle_analysis::fit::{Observation, RobustOptions, fit_robust};
-use binnacle_compass::angle::TrueHeading;
-use binnacle_compass::field::{FieldModel, field};
-use binnacle_compass::position::Position;
-use binnacle_compass::sample::Sample;
-use binnacle_compass::settings::AnalysisSettings;
-use binnacle_compass::time::Timestamp;
+use binnacle_analysis::fit::{RobustOptions, fit_robust};
 use divan::Bencher;
-use voyages::{Faults, Variety, sail, sail_on};
+use voyages::{Faults, Variety, sail};
 
 fn main() {
     divan::main();
@@ -28,63 +20,4 @@ fn main() {
 fn robust_fit(bencher: Bencher<'_, '_>, days: u32) {
     let voyage = sail(3, Variety::Medium, f64::from(days), &Faults::USUAL);
     bencher.bench_local(|| fit_robust(&voyage.observations, &RobustOptions::default()));
-}
-
-/// The samples of one vessel as they arrive at the server, the latest first: sorting and
-/// the earth's field are included.
-#[divan::bench(args = [60, 423], sample_count = 10, sample_size = 1)]
-fn analyse_gyro(bencher: Bencher<'_, '_>, days: u32) {
-    bench_analysis(bencher, days, &Faults::USUAL);
-}
-
-/// With a satellite compass beside the gyro.
-#[divan::bench(args = [60, 423], sample_count = 10, sample_size = 1)]
-fn analyse_gyro_and_satellite(bencher: Bencher<'_, '_>, days: u32) {
-    let faults = Faults {
-        satellite: true,
-        ..Faults::USUAL
-    };
-    bench_analysis(bencher, days, &faults);
-}
-
-fn bench_analysis(bencher: Bencher<'_, '_>, days: u32, faults: &Faults) {
-    let voyage = sail_on(igrf, 3, Variety::Medium, f64::from(days), faults);
-    let mut samples: Vec<Sample> = voyage.observations.iter().map(sample).collect();
-    samples.reverse();
-    let settings = AnalysisSettings::default();
-    let analysis = analyse(&samples, &[], &settings);
-    let model = analysis.current_epoch().and_then(|e| e.model.as_ref());
-    // An analysis that refuses would be quick.
-    assert!(model.is_some_and(|m| m.samples_used > m.samples_rejected));
-    bencher.bench_local(|| analyse(&samples, &[], &settings));
-}
-
-fn igrf(lat_deg: f64, lon_deg: f64, time: Timestamp) -> (f64, f64, f64) {
-    let position = Position::new(lat_deg, lon_deg).unwrap();
-    let at = field(FieldModel::Igrf14, position, 0.0, time).unwrap();
-    let ship_field = at.for_ship();
-    (
-        at.declination().degrees_east(),
-        ship_field.h_nt,
-        ship_field.z_nt,
-    )
-}
-
-/// Returns the sample whose readings gave an observation.
-fn sample(o: &Observation) -> Sample {
-    let reference = ((o.compass + o.deviation) + o.variation).degrees();
-    let apart = o.gyro_less_satellite_deg;
-    let satellite = apart.map(|apart| reference - o.gyro_share * apart);
-    let gyro = satellite
-        .zip(apart)
-        .map_or(reference, |(s, apart)| s + apart);
-    Sample {
-        gyro: TrueHeading::new(gyro),
-        satellite: satellite.and_then(TrueHeading::new),
-        sog_kn: o.sog_kn,
-        rate_of_turn_deg_min: Some(0.0),
-        spread_deg: Some(0.3),
-        windows: o.windows,
-        ..Sample::new(o.time.unwrap(), o.position.unwrap(), o.compass)
-    }
 }

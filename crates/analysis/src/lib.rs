@@ -1,5 +1,5 @@
-//! Analysis of a vessel's own headings: estimation, change detection, the whole analysis of
-//! a compass, and advice on what to sail next.
+//! Fits of a vessel's magnetism to her own headings, the fleet's prior, the samples of a compass
+//! made ready for tracking, and advice on what to sail next.
 //!
 //! Pure: no input or output, no clock, no randomness. Everything here is a function of its
 //! arguments, so that an analysis can be repeated to the byte. The conventions are those of
@@ -14,8 +14,6 @@ pub mod fit;
 
 pub mod fleet_prior;
 
-pub mod change;
-
-pub mod analyse;
+pub mod readings;
 
 pub mod advice;

@@ -135,6 +135,19 @@ fn no_watch_widens_a_band_or_goes_below_the_references_constant() {
     assert!(made > 100, "{made}");
 }
 
+/// A settled ship's band is that of her reference's constant, and azimuths go below it.
+#[test]
+fn twenty_azimuths_narrow_a_settled_band_of_one_degree_to_about_four_tenths() {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let next = ask(&known_ship(&mut rng, 10_000, BISCAY), BISCAY).unwrap();
+    let azimuths = next.azimuths.unwrap();
+    assert!((azimuths.band.rms_deg - 1.0).abs() < 0.08, "{azimuths:?}");
+    assert!(azimuths.after_twenty.rms_deg < 0.45, "{azimuths:?}");
+    assert!(azimuths.after_twenty.rms_deg > 0.25, "{azimuths:?}");
+    let one = azimuths.after_one.rms_deg;
+    assert!(one < azimuths.band.rms_deg && one > azimuths.after_twenty.rms_deg);
+}
+
 #[test]
 fn the_mirrored_ship_is_given_the_mirrored_headings() {
     let mut rng = ChaCha8Rng::seed_from_u64(2);

@@ -5,10 +5,9 @@
 
 mod voyages;
 
-use binnacle_analysis::estimate::Prior;
-use binnacle_analysis::fit::{Observation, RobustOptions, fit_known_ship, fit_robust};
+use binnacle_analysis::fit::{Observation, RobustOptions, fit_robust};
 use binnacle_compass::angle::{CompassHeading, Deviation, wrap_180};
-use binnacle_compass::model::{Caution, Model, Parameters};
+use binnacle_compass::model::{Caution, Model};
 use voyages::tally::Tally;
 use voyages::{Faults, Truth, Variety, predicted, sail, true_deviation};
 
@@ -249,46 +248,4 @@ fn too_few_samples_are_not_taken_for_too_few_latitudes() {
         );
         assert!(cautions.contains(&Caution::FewSamples), "{cautions:?}");
     }
-}
-
-/// One sea after a jump: the induced parameters rest on prior knowledge, and are as
-/// uncertain as stated.
-#[test]
-fn what_was_known_before_a_jump_counts_for_no_more_than_it_is_worth() {
-    let sd = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
-    // Sizes as of jumps: a third of the difference between ships.
-    let jumps = [-1.5, -0.9, -0.4, 0.1, 0.5, 0.8, 1.3_f64];
-    let (mut held, mut looked_at) = (0, 0);
-    for (k, seed) in (2500..2512).enumerate() {
-        let voyage = sail(seed, Variety::Poor, 4.0, &Faults::USUAL);
-        let mut before = voyage.truth.parameters.to_array();
-        let mut covariance = [[0.0; 8]; 8];
-        for j in 0..7 {
-            let part = if matches!(j, 0 | 2) { 0.8 } else { 0.3 };
-            before[j] += part * sd[j] * jumps[(k + 3 * j) % 7];
-            covariance[j][j] = (0.03 * sd[j]).powi(2);
-        }
-        covariance[7][7] = 0.3;
-        let known = Model {
-            parameters_over_lambda: Parameters::from_array(before),
-            constant_deg: voyage.truth.alignment_deg,
-            covariance: Some(covariance),
-            ..fitted(&voyage.observations)
-        };
-        let options = RobustOptions {
-            prior: Prior::after_jump(&known, 0.5).unwrap(),
-            reference_constant_sd_deg: 0.5,
-        };
-        let fit = fit_known_ship(&voyage.observations, &options).unwrap();
-        let found = fit.model.parameters_over_lambda.to_array();
-        let truth = voyage.truth.parameters.to_array();
-        // χ13, χ23 and D: headings show the others, or nothing does.
-        for j in [1, 3, 4] {
-            let se = fit.model.covariance.unwrap()[j][j].sqrt();
-            held += u32::from((found[j] - truth[j]).abs() <= 1.96 * se);
-            looked_at += 1;
-        }
-    }
-    let share = f64::from(held) / f64::from(looked_at);
-    assert!(share > 0.85, "{share}");
 }

@@ -114,7 +114,7 @@ fn a_reference_that_errs_otherwise_each_day_falls_short_and_widens_the_band() {
     let start = log.samples[0].time;
     let erring = log.samples.iter().map(|sample| {
         let day = (sample.time.seconds_since(start) / 86_400.0) as i64;
-        let side = if day % 2 == 0 { 2.0 } else { -2.0 };
+        let side = if day % 2 == 0 { 1.6 } else { -1.6 };
         let off_deg = side * (2.0 * sample.compass.degrees().to_radians()).sin();
         let moved = |heading: TrueHeading| TrueHeading::new(heading.degrees() + off_deg).unwrap();
         Sample {

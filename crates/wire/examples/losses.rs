@@ -11,7 +11,7 @@
 #[path = "../../analysis/tests/voyages/mod.rs"]
 mod voyages;
 
-use binnacle_analysis::analyse::analyse;
+use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
 use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
@@ -305,7 +305,13 @@ fn truth(log: &Log) -> [f64; HEADINGS] {
 
 /// `None` where the analysis gives no model or several epochs.
 fn curve(log: &Log, samples: &[Sample]) -> Option<Curve> {
-    let analysis = analyse(samples, &[], &AnalysisSettings::default());
+    let analysis = binnacle_tracking::analyse(&binnacle_tracking::Input {
+        samples,
+        logbook: &[],
+        azimuths: &[],
+        prior: &ShipPrior::population(),
+        settings: AnalysisSettings::default(),
+    });
     let [epoch] = &analysis.epochs[..] else {
         return None;
     };

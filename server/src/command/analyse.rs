@@ -3,14 +3,15 @@
 use super::{BadInput, input, json, logbook, print_result};
 use crate::cli::{Analyse, GyroSpeedError};
 use binnacle_analysis::advice::sail_next;
-use binnacle_analysis::analyse::analyse as run;
 use binnacle_analysis::fit::{CsvRow, Motion, readings_from_csv};
+use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::position::Position;
 use binnacle_compass::result::{Analysis, SailNext};
 use binnacle_compass::sample::Sample;
 use binnacle_compass::settings::AnalysisSettings;
+use binnacle_tracking::Input;
 use serde::Serialize;
 use std::path::Path;
 use std::process::ExitCode;
@@ -38,7 +39,13 @@ fn find(arguments: &Analyse) -> Result<String, BadInput> {
         gyro_speed_error: arguments.gyro_speed_error.into(),
         ..AnalysisSettings::default()
     };
-    let analysis = run(&samples, &logbook, &settings);
+    let analysis = binnacle_tracking::analyse(&Input {
+        samples: &samples,
+        logbook: &logbook,
+        azimuths: &[],
+        prior: &ShipPrior::population(),
+        settings,
+    });
     Ok(json(&Analysed {
         sail_next: sail_next(&analysis),
         analysis,

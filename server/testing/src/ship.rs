@@ -220,15 +220,21 @@ pub fn days_at_sea(ship: &Model, from: &str, days: f64) -> Vec<Sample> {
     days_in_waters(biscay(), ship, from, days)
 }
 
-/// Returns such samples at another position.
+/// Returns such samples of a ship that ends at another position.
 pub fn days_in_waters(position: Position, ship: &Model, from: &str, days: f64) -> Vec<Sample> {
     let start = Timestamp::parse(from).unwrap();
     let samples = (days * 144.0).round() as u32;
+    let heading_deg = |i: u32| 107.0 * f64::from(i / 18);
+    let mut track: Vec<Position> = vec![position];
+    for i in (1..samples).rev() {
+        track.push(sailed(track[track.len() - 1], heading_deg(i) + 180.0, 2.0));
+    }
+    track.reverse();
     (0..samples)
-        .map(|i| {
-            let leg = f64::from(i / 18);
+        .zip(track)
+        .map(|(i, position)| {
             let time = start.plus_seconds(600.0 * f64::from(i));
-            let mut sample = sample_of(ship, position, time, 107.0 * leg);
+            let mut sample = sample_of(ship, position, time, heading_deg(i));
             let off = |sign: u32, size_deg: f64| size_deg * unevenness(3 * i + sign);
             let compass_deg = sample.compass.degrees() + off(0, 0.4);
             sample.compass = CompassHeading::new(compass_deg).unwrap();
@@ -238,6 +244,14 @@ pub fn days_in_waters(position: Position, ship: &Model, from: &str, days: f64) -
             sample
         })
         .collect()
+}
+
+/// Returns the position after some miles on a heading.
+fn sailed(from: Position, heading_deg: f64, miles: f64) -> Position {
+    let (east, north) = heading_deg.to_radians().sin_cos();
+    let lat = from.lat_deg() + miles / 60.0 * north;
+    let lon = from.lon_deg() + miles / 60.0 * east / from.lat_deg().to_radians().cos();
+    position(lat, lon)
 }
 
 /// Returns a reproducible pseudo-random number between -1 and 1.

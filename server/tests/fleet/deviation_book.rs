@@ -58,7 +58,7 @@ async fn the_book_has_an_entry_for_each_watch_and_large_alteration(server: TestS
         lines[0]
     );
     assert!(
-        lines[1].starts_with(&format!("{FROM},watch,48")),
+        lines[1].starts_with(&format!("{FROM},watch,47.9")),
         "{}",
         lines[1]
     );

@@ -3501,6 +3501,21 @@ export interface components {
             /** @description Value of `after` for the next page. */
             next: string | null;
         };
+        /** @description Effect of azimuths of the sun, or of another body or a transit, on the band here. */
+        AzimuthAdvice: {
+            /** @description Greatest band after one azimuth on any heading. */
+            after_one: components["schemas"]["Band"];
+            /** @description Band after twenty azimuths on headings all round. */
+            after_twenty: components["schemas"]["Band"];
+            /** @description Present band. */
+            band: components["schemas"]["Band"];
+            /**
+             * Format: double
+             * @description Standard error of one azimuth, degrees.
+             * @example 0.7
+             */
+            standard_error_deg: number;
+        };
         /**
          * @description Reason for caution with an observation.
          * @enum {string}
@@ -4043,7 +4058,7 @@ export interface components {
          * @description Reference of a true heading.
          * @enum {string}
          */
-        BookReference: "gyro" | "satellite" | "gyro_and_satellite" | "sun_azimuth" | "sun_amplitude" | "body" | "transit" | "quay";
+        BookReference: "gyro" | "satellite" | "gyro_and_satellite" | "course_over_ground" | "sun_azimuth" | "sun_amplitude" | "body" | "transit" | "quay";
         /** @description A position of the pair on the brackets. */
         BracketMark: {
             /**
@@ -4178,7 +4193,7 @@ export interface components {
             data_until: components["schemas"]["Time"];
             /**
              * @description The estimator that made it.
-             * @example state-space-9
+             * @example hypotheses-1
              */
             estimator: string;
             /** @description Time at which it was fitted or predicted. */
@@ -4746,7 +4761,7 @@ export interface components {
             /** @description Names of the sizes with a pair on board. */
             quadrantal?: string[];
         };
-        /** @description Coverage of a compass's samples, with advice and a comparison of the references. */
+        /** @description Coverage of a compass's samples, with advice, and checks of the references and of the band. */
         Coverage: {
             /** @description Bands with samples, from south to north. */
             bands: components["schemas"]["CoverageBand"][];
@@ -4762,6 +4777,7 @@ export interface components {
              * @description Width of a band of magnetic latitude, degrees.
              */
             magnetic_latitude_step_deg: number;
+            predictions: components["schemas"]["PredictionCoverage"] | null;
             references: components["schemas"]["References"] | null;
             sail_next: components["schemas"]["SailNext"] | null;
         };
@@ -7666,6 +7682,71 @@ export interface components {
              */
             z_nt: number;
         };
+        /**
+         * @description Readings that were predicted before they were used, and the share inside the 95 % band.
+         *
+         *     Rows minutes apart share their errors. A watch is therefore the unit that counts: the rows
+         *     on one heading, four hours at most, predicted from all that was known before its first
+         *     row. Watches are independent of each other where the band is right.
+         */
+        PredictionCoverage: {
+            /**
+             * Format: int32
+             * @description Fewest watches inside that a right band may have by chance, at 95 %.
+             * @example 90
+             */
+            expected_from: number;
+            /**
+             * Format: int32
+             * @description Most watches inside that a right band may have by chance, at 95 %.
+             * @example 99
+             */
+            expected_to: number;
+            /**
+             * Format: double
+             * @description Mean square of the watches' errors over their predicted variance, each at most 9; 1 is
+             *     right.
+             * @example 1.05
+             */
+            mean_square: number;
+            /**
+             * Format: int64
+             * @description Rows that were predicted from the rows before.
+             * @example 4210
+             */
+            rows: number;
+            /**
+             * Format: int64
+             * @description Rows inside their 95 % band, the noise of a row in it.
+             * @example 4003
+             */
+            rows_inside: number;
+            /**
+             * Format: int32
+             * @description Latest watches that were predicted, at most a hundred.
+             * @example 100
+             */
+            watches: number;
+            /**
+             * Format: int32
+             * @description Watches left out: they lie between a reported change, or fault of an instrument, and its
+             *     detection.
+             * @example 2
+             */
+            watches_disturbed: number;
+            /**
+             * Format: int32
+             * @description Watches whose mean lay inside its 95 % band.
+             * @example 94
+             */
+            watches_inside: number;
+            /**
+             * Format: double
+             * @description Factor by which the band of the current model was widened; never below 1.
+             * @example 1
+             */
+            widening: number;
+        };
         /** @description Error as it is sent (RFC 9457). */
         Problem: {
             card_withdrawn?: components["schemas"]["CardWithdrawn"] | null;
@@ -8272,6 +8353,7 @@ export interface components {
          *     A watch is four hours on one compass heading. Three watches are on three successive days.
          */
         SailNext: {
+            azimuths: components["schemas"]["AzimuthAdvice"] | null;
             elsewhere: components["schemas"]["LatitudeAdvice"] | null;
             /**
              * Format: double

@@ -75,6 +75,7 @@ export type PlanOffer = Schemas['PlanOffer'];
 export type PlanStep = Schemas['PlanStep'];
 export type PredictedTable = Schemas['PredictedTable'];
 export type References = Schemas['References'];
+export type Predictions = Schemas['PredictionCoverage'];
 export type LeftOut = Schemas['LeftOut'];
 export type Refusal = Schemas['Refusal'];
 export type SailNext = Schemas['SailNext'];

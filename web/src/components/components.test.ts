@@ -43,6 +43,12 @@ describe('what to sail next', () => {
         },
       ],
     },
+    azimuths: {
+      standard_error_deg: 0.7,
+      band: band(1.2),
+      after_one: band(0.96),
+      after_twenty: band(0.44),
+    },
   };
 
   test('is headings here and magnetic latitudes for elsewhere, with what they would do', () => {
@@ -55,6 +61,9 @@ describe('what to sail next', () => {
       'Between 60° S and 20° N, magnetic latitude A watch on about 100° there would narrow the band in other waters from ± 2.9° to ± 2.0°, three watches (100° and 350°) to ± 1.3°.',
     );
     expect(shown).not.toContain('Neither');
+    expect(shown).toContain(
+      'Take an azimuth Only azimuths show the error of the gyro or satellite compass itself. One, of the sun or of a transit, would narrow the band here from ± 1.2° to ± 1.0°; twenty in the course of a voyage to ± 0.4°.',
+    );
   });
 
   test('is nothing where only the reference’s own error is left, and that is said', () => {
@@ -68,7 +77,7 @@ describe('what to sail next', () => {
       'It is ± 1.01°, and the reference’s own constant error, which no heading shows, is ± 0.98°',
     );
     expect(shown).toContain('narrows the band by more than 0.03°');
-    expect(shown).toContain('check the gyro');
+    expect(shown).toContain('Take an azimuth');
     expect(shown).not.toContain('For other waters');
   });
 });

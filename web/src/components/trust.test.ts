@@ -58,6 +58,7 @@ describe('how far to trust the curve', () => {
       gyro_dropped: 0,
       satellite_dropped: 3,
     },
+    predictions: null,
   };
   const from_data = {
     ...{ bx_nt: 0.9, chi13: 0.2, by_nt: 1, chi23: 1, chi11_minus_chi22: 1 },
@@ -174,6 +175,7 @@ test('coverage names the headings that are missing, and says when one band is al
     bands: [],
     sail_next: null,
     references: null,
+    predictions: null,
     cells: Array.from({ length: 20 }, (_, i) => ({
       heading_from_deg: i * 15,
       magnetic_latitude_from_deg: 40,

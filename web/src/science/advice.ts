@@ -35,6 +35,12 @@ export function latitudeSuggestions(advice: NonNullable<SailNext['elsewhere']>):
   });
 }
 
+/** What one azimuth and twenty would do. */
+export function azimuthGain(azimuths: NonNullable<SailNext['azimuths']>): string {
+  const { band, after_one, after_twenty } = azimuths;
+  return t().gainAzimuths(...widths(band, after_one, after_twenty));
+}
+
 /** How wide the band is, and how much of it no sailing takes away. */
 export function remains(advice: Advice, floorDeg: number): string {
   const [band, floor] = widths(advice.band, { rms_deg: floorDeg, worst_deg: floorDeg });

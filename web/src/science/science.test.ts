@@ -189,6 +189,7 @@ describe('coverage', () => {
     bands: [],
     sail_next: null,
     references: null,
+    predictions: null,
     cells: cells.map(([magnetic_latitude_from_deg, heading_from_deg, samples]) => ({
       magnetic_latitude_from_deg,
       heading_from_deg,

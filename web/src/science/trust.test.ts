@@ -4,7 +4,7 @@ import type { Caution, Model, References, Refusal } from '../api/types';
 import { band95, standardError, widestBand } from './band';
 import { goodRanges, magneticLatitudeOf, watersOf, worstWaters, type Waters } from './reach';
 import { refusalWords } from './refusal';
-import { cautionWords, dropped, elsewhere, here, references, worth } from './trust';
+import { cautionWords, dropped, elsewhere, here, predictions, references, worth } from './trust';
 
 /** The page that says what a model is, with a worked example. */
 const page = readFileSync(new URL('../../../docs/model.md', import.meta.url), 'utf8');
@@ -154,6 +154,25 @@ describe('in words', () => {
     const single = { ...found, pairs: 0, offset_deg: null };
     expect(references(single).figure).toBe('Only one');
     expect(dropped(single)).not.toContain('further than');
+  });
+
+  test('predictions say how many came true, and by how much the band was widened', () => {
+    const found = {
+      rows: 4210,
+      rows_inside: 4003,
+      watches: 100,
+      watches_inside: 94,
+      expected_from: 90,
+      expected_to: 99,
+      watches_disturbed: 2,
+      mean_square: 1.05,
+      widening: 1,
+    };
+    expect(predictions(found)?.figure).toBe('94 of 100');
+    expect(predictions(found)?.meaning).toContain('Of an honest band, 90 to 99 do.');
+    const short = predictions({ ...found, watches_inside: 81, widening: 1.42 });
+    expect(short?.meaning).toContain('1.4 times as wide');
+    expect(predictions({ ...found, watches: 19, watches_inside: 19 })).toBeNull();
   });
 
   test('every refusal says what is missing and what to do', () => {

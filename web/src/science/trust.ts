@@ -1,6 +1,6 @@
 /** How far a model can be trusted, in an officer's words. */
 
-import type { Caution, DeviationRow, Model, References } from '../api/types';
+import type { Caution, DeviationRow, Model, Predictions, References } from '../api/types';
 import { count, day, degrees, heading, microtesla, time } from '../format';
 import * as text from '../text';
 import { size } from './advice';
@@ -8,6 +8,9 @@ import { normal95 } from './band';
 import { magneticLatitude } from './coverage';
 import type { Foretold } from './foretold';
 import { goodDeg, goodRanges, worstWaters, type Range, type Waters } from './reach';
+
+/** Fewer watches than these say nothing of a band that holds nineteen times in twenty. */
+const fewestWatches = 20;
 
 /** A figure to take in at a glance, and what it means. */
 export interface Statement {
@@ -86,6 +89,15 @@ export function cautionWords(caution: Caution): string {
       // A newer server may know more than this page does.
       return t().unknown;
   }
+}
+
+/** How often what was predicted came true; none before enough watches. */
+export function predictions(found: Predictions): Statement | null {
+  if (found.watches < fewestWatches) return null;
+  const figure = t().predictions(count(found.watches_inside), count(found.watches));
+  const [from, to] = [count(found.expected_from), count(found.expected_to)];
+  if (found.widening <= 1.05) return { figure, meaning: t().predictionsHeld(from, to) };
+  return { figure, meaning: t().predictionsShort(from, to, found.widening.toFixed(1)) };
 }
 
 /** How gyro and satellite compass compare. */

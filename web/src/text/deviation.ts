@@ -135,8 +135,9 @@ export const sailNext = {
     `In other magnetic latitudes the band is ${mean} as a mean, ${worst} at worst.`,
   nothing: (band: string, floor: string, most: string) =>
     `Neither one watch nor three would narrow the band noticeably. It is ${band}, and the reference’s own constant error, which no heading shows, is ${floor} by itself: nothing sailed narrows the band by more than ${most}.`,
-  reference:
-    'To narrow it further, check the gyro or satellite compass against a transit, the sun’s bearing or a second reference.',
+  takeAzimuths: 'Take an azimuth',
+  gainAzimuths: (now: string, one: string, many: string) =>
+    `Only azimuths show the error of the gyro or satellite compass itself. One, of the sun or of a transit, would narrow the band here from ${now} to ${one}; twenty in the course of a voyage to ${many}.`,
   magneticLatitude:
     'Magnetic latitude follows the dip of the earth’s field; it differs from the chart’s latitude by some ten degrees.',
 };

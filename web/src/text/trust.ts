@@ -20,6 +20,14 @@ export const trust = {
   worthTitle: 'Her samples are worth',
   worth: (samples: string, effective: string) =>
     `${samples} samples, worth ${effective} with independent errors: a gyro’s errors last for hours and days, the variation’s for tens of miles, so that samples repeat each other.`,
+  predictionsTitle: 'Predicted before it was read',
+  predictions: (inside: string, watches: string) => `${inside} of ${watches}`,
+  predictionsHeld: (from: string, to: string) =>
+    `So many of her latest watches lay inside the 95 % band that was drawn before their first reading. Of an honest band, ${from} to ${to} do.`,
+  predictionsShort: (from: string, to: string, factor: string) =>
+    `So many of her latest watches lay inside the 95 % band that was drawn before their first reading. Of an honest band ${from} to ${to} would: her band is therefore drawn ${factor} times as wide as the model alone would have it.`,
+  byCourse:
+    'This model rests on the course over ground alone, because the ship has neither gyro nor satellite compass. Current and wind are estimated, and the band is wide. Take azimuths, and do not steer by it without them.',
   referencesTitle: 'Gyro and satellite compass',
   apart: (angle: string) => `${angle} apart`,
   gyroAhead: (angle: string, pairs: string) =>

@@ -1,7 +1,7 @@
 //! Knowledge of a vessel's deviation, and the gain of a watch.
 //!
 //! Learning never widens a band. The reference's constant error, which no heading can show,
-//! is never learnt.
+//! is learnt from azimuths alone.
 
 use super::question::AdviceError;
 use binnacle_compass::coverage::HEADING_STEP_DEG;
@@ -87,6 +87,14 @@ impl Knowledge {
         })
     }
 
+    /// Returns the knowledge in which the reference's constant can be learnt, too.
+    pub(super) fn with_reference(&self) -> Knowledge {
+        let mut open = self.clone();
+        open.covariance[(PARAMETERS, PARAMETERS)] += self.reference;
+        open.reference = 0.0;
+        open
+    }
+
     /// Returns the half-width of the band when everything is learnt, degrees.
     pub(super) fn floor_deg(&self) -> f64 {
         NORMAL_95 * self.reference.sqrt()
@@ -113,7 +121,7 @@ impl Knowledge {
     }
 
     /// Adds a row of variance 1 (docs/science.md, eq. 15).
-    fn learn(&mut self, row: &Slope) {
+    pub(super) fn learn(&mut self, row: &Slope) {
         let learnt = self.covariance * row;
         let share = 1.0 / (row.dot(&learnt) + 1.0);
         self.covariance -= learnt * learnt.transpose() * share;

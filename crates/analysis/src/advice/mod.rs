@@ -8,8 +8,9 @@
 //! slow wander is nearly the same in all of them.
 //!
 //! No watch widens a band. None narrows it below what the reference's own constant error
-//! leaves, which no heading can show.
+//! leaves, which no heading can show: azimuths do.
 
+mod azimuths;
 mod knowledge;
 mod question;
 mod ranges;
@@ -19,6 +20,7 @@ mod watch;
 pub use question::{AdviceError, NOTICEABLE_DEG, Question};
 pub use watch::{WATCH_HOURS, WATCHES};
 
+use azimuths::azimuth_advice;
 use binnacle_compass::result::{Analysis, SailNext};
 use binnacle_compass::ship::EarthField;
 use knowledge::{Knowledge, slopes};
@@ -67,5 +69,6 @@ pub fn advise(question: &Question<'_>) -> Result<SailNext, AdviceError> {
         floor_deg: known.floor_deg(),
         here,
         elsewhere,
+        azimuths: azimuth_advice(&known, &own),
     })
 }

@@ -28,14 +28,8 @@ mod undated_rows;
 mod whitening;
 
 pub use noise_process::{COMPASS_SWING_S, SATELLITE_S, SLOW_GYRO_S, VARIATION_NM, swing_over};
-pub(crate) use noise_process::{SCHULER_DAMPING, SCHULER_PER_S, Transition};
-pub(crate) use prior::unseen_sd_nt;
+pub(crate) use noise_process::{SCHULER_DAMPING, SCHULER_PER_S};
 pub use prior::{POPULATION_SD, Prior};
-pub use robust_loss::{robust_loss, weight};
-pub(crate) use rows::{
-    CONSTANT, LinearisationPoint, OFFSET_SD_DEG, Row, RowFrame, UNKNOWNS, USUAL_REFERENCE_SHARE,
-    Unknowns, frames, row,
-};
+pub use robust_loss::{FULL_WEIGHT_SD, weight};
 pub use rows::{Direction, Needle, Scatter, WhiteNoise};
-pub(crate) use solve::{Options, RoughEstimate, Turn, estimate, estimate_roughly};
-pub(crate) use undated_rows::are_times_plausible;
+pub(crate) use solve::{Options, Turn, estimate};

@@ -16,17 +16,6 @@ const ALIGNMENT_SD_DEG: f64 = 0.5;
 /// and the constant. Such a tail accepts a vessel far out.
 const DEGREES_OF_FREEDOM: [f64; 2] = [6.0, 3.0];
 
-/// Standard deviation of the induced parameters after a jump of the permanent ones, as a
-/// part of the population's.
-const INDUCED_JUMP_SHARE: f64 = 0.4;
-
-/// Largest step of permanent magnetism that lightning is known to leave, nT.
-const LARGEST_STEP_NT: f64 = 20_000.0;
-/// Least ratio of a step's unseen part to its seen part, however large that is.
-const BEYOND_SEEN: f64 = 1.2;
-/// Two-sided 95 % of a normal distribution, in standard deviations.
-const NORMAL_95: f64 = 1.959_964;
-
 /// Prior knowledge: of ships at large, or of the same vessel's previous epoch. The constant
 /// is as headings show it, with the reference's own error in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,47 +40,6 @@ impl Prior {
         Prior {
             mean: [0.0; 8],
             covariance,
-        }
-    }
-
-    /// Returns the prior of a vessel whose permanent magnetism jumped after `model` was
-    /// fitted with a reference of the given constant error: bx and by may be anything, and
-    /// the induced parameters are much as before. None when the model has no covariance.
-    pub fn after_jump(
-        model: &binnacle_compass::model::Model,
-        reference_constant_sd_deg: f64,
-    ) -> Option<Prior> {
-        let mut covariance = model.covariance?;
-        let mut mean = [0.0; 8];
-        mean[..PARAMETERS].copy_from_slice(&model.parameters_over_lambda.to_array());
-        mean[PARAMETERS] = model.constant_deg;
-        for (j, sd) in POPULATION_SD.iter().enumerate() {
-            let interruption = if matches!(j, 0 | 2) {
-                *sd
-            } else {
-                INDUCED_JUMP_SHARE * sd
-            };
-            covariance[j][j] += interruption * interruption;
-        }
-        // The reference's error stays the same: headings show the constant better than it
-        // is known in itself.
-        let constant = &mut covariance[PARAMETERS][PARAMETERS];
-        *constant = (*constant - reference_constant_sd_deg.powi(2)).max(0.01);
-        Some(Prior { mean, covariance })
-    }
-
-    /// Returns the prior after an alignment change by which the constant is larger by
-    /// `moved_deg`.
-    pub(crate) fn with_compass_turned(&self, moved_deg: f64) -> Prior {
-        let mut mean = self.mean;
-        let parameters = std::array::from_fn(|j| mean[j]);
-        let turned = binnacle_compass::model::Parameters::from_array(parameters)
-            .with_compass_turned(-moved_deg.to_radians());
-        mean[..PARAMETERS].copy_from_slice(&turned.to_array());
-        mean[PARAMETERS] += moved_deg;
-        Prior {
-            mean,
-            covariance: self.covariance,
         }
     }
 
@@ -121,19 +69,6 @@ impl Prior {
         let finite = mean.iter().chain(information.iter()).all(|x| x.is_finite());
         finite.then_some((mean, information))
     }
-}
-
-/// Returns the standard deviation, nT, of a step's unseen part, of which `seen_nt` was
-/// seen: on one course the part across the needle, and nothing along it.
-///
-/// Steps have any direction, and as many are from 1 to 2 µT as from 5 to 10. The unseen
-/// part then has the density 1/(seen² + unseen²), up to the largest known step. The normal
-/// distribution returned has the same 95 %.
-pub(crate) fn unseen_sd_nt(seen_nt: f64) -> f64 {
-    let seen = seen_nt.abs().max(1.0);
-    let most = (LARGEST_STEP_NT.powi(2) - seen * seen).max(0.0).sqrt();
-    let within_95 = seen * (0.95 * (most / seen).atan()).tan();
-    (within_95 / NORMAL_95).max(BEYOND_SEEN * seen)
 }
 
 /// Returns factors on the standard deviations of the seven parameters and of the constant
@@ -177,35 +112,4 @@ pub(crate) fn scales() -> [f64; 8] {
     let mut scale = [1.0; 8];
     scale[..PARAMETERS].copy_from_slice(&POPULATION_SD);
     scale
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_step_may_be_several_times_as_large_where_nothing_shows_it() {
-        let times = |seen_nt: f64| unseen_sd_nt(seen_nt) / seen_nt;
-        assert!((3.5..4.5).contains(&times(1000.0)), "{}", times(1000.0));
-        assert!((1.6..2.2).contains(&times(4000.0)), "{}", times(4000.0));
-        // A step as large as any known has no more to hide.
-        assert!((times(20_000.0) - BEYOND_SEEN).abs() < 1e-9);
-        assert!(unseen_sd_nt(0.0) < 10.0);
-    }
-
-    #[test]
-    fn of_many_steps_in_any_direction_the_band_holds_what_is_unseen_of_95_in_100() {
-        // Sizes with the density 1/size from 0.02 to 20 µT, in even directions.
-        let (mut all, mut held) = (0.0, 0.0);
-        for size in 0..300 {
-            let nt = 20.0 * 1000_f64.powf(f64::from(size) / 299.0);
-            for direction in 0..360 {
-                let (sin, cos) = f64::from(direction).to_radians().sin_cos();
-                let unseen = (nt * cos).abs();
-                all += 1.0;
-                held += f64::from(unseen <= 1.96 * unseen_sd_nt(nt * sin));
-            }
-        }
-        assert!(held / all > 0.93, "{}", held / all);
-    }
 }

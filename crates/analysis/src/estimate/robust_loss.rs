@@ -2,7 +2,7 @@
 
 /// Innovation from which its weight falls, standard deviations: Gaussian noise loses next
 /// to nothing.
-const FULL_WEIGHT_SD: f64 = 2.5;
+pub const FULL_WEIGHT_SD: f64 = 2.5;
 
 /// Innovation from which it is no noise that the levels describe, standard deviations.
 const GROSS_ERROR_SD: f64 = 6.0;
@@ -28,7 +28,7 @@ pub(crate) fn batch_weight(z_squared: f64) -> f64 {
 
 /// Returns the loss whose slope is twice the weighted innovation, up to its value at
 /// `GROSS_ERROR_SD`: the levels describe the other rows, however wild a few are.
-pub fn robust_loss(z_squared: f64) -> f64 {
+pub(crate) fn robust_loss(z_squared: f64) -> f64 {
     let square = z_squared.min(GROSS_ERROR_SD * GROSS_ERROR_SD);
     let bound = FULL_WEIGHT_SD * FULL_WEIGHT_SD;
     if square <= bound {

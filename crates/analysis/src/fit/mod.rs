@@ -21,9 +21,6 @@ pub use ols::fit_ols;
 pub use paper::fit_paper;
 pub use reference::{HeadingReading, ObservedReadings, compare_references, observe_readings};
 pub use residual_check::check_residuals;
-pub(crate) use robust::fit_roughly;
-pub use robust::{
-    REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, fit_known_ship, fit_robust,
-};
+pub use robust::{REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, fit_robust};
 pub use shared_noise::{HeadingPair, check_independence, check_readings_independence};
 pub use time_outliers::long_gap;

@@ -3,7 +3,7 @@
 
 use super::heading_check::check_headings;
 use super::{residual_check, time_outliers};
-use crate::estimate::{Options, Prior, RoughEstimate, Turn, estimate, estimate_roughly};
+use crate::estimate::{Options, Prior, Turn, estimate};
 use crate::observation::Observation;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
@@ -14,8 +14,6 @@ use std::borrow::Cow;
 
 /// Least number of samples for a fit of eight unknowns.
 const NEEDED_SAMPLES: u64 = 12;
-/// Least number of samples for a vessel known but for its permanent magnetism.
-const NEEDED_SAMPLES_KNOWN_VESSEL: u64 = 6;
 /// Weight below which a row counts as rejected.
 pub const REJECTED_BELOW: f64 = 0.5;
 
@@ -79,38 +77,6 @@ pub fn fit_robust(
     check_headings(&rows)?;
     let turn = Turn::find(&rows, &options.prior);
     fit_usable(observations, &usable, &rows, options, turn)
-}
-
-/// Fits a model of a vessel of which much is known, so that few observations on few
-/// headings suffice: the prior adds the rest, and the band shows how well it is known.
-///
-/// # Errors
-/// Fails when the observations cannot carry a model, with what is missing.
-pub fn fit_known_ship(
-    observations: &[Observation],
-    options: &RobustOptions,
-) -> Result<RobustFit, FitError> {
-    let usable = usable(observations);
-    let rows = chosen(observations, &usable);
-    check_field(observations)?;
-    check_number(&rows, NEEDED_SAMPLES_KNOWN_VESSEL)?;
-    fit_usable(observations, &usable, &rows, options, None)
-}
-
-/// Returns the noise levels, and roughly the parameters, where [`fit_robust`] would fit a
-/// model; `before` are levels close to them.
-pub(crate) fn fit_roughly(
-    observations: &[Observation],
-    prior: &Prior,
-    before: Option<&NoiseLevels>,
-) -> Option<RoughEstimate> {
-    let mut rows = observations.to_vec();
-    rows.retain(is_usable);
-    check_number(&rows, NEEDED_SAMPLES).ok()?;
-    check_headings(&rows).ok()?;
-    let learnt = estimate_roughly(&rows, prior, before)?;
-    check_needle(&learnt.parameters, &rows).ok()?;
-    Some(learnt)
 }
 
 /// Returns the places of the observations that a fit may use.

@@ -20,6 +20,25 @@ pub struct SailNext {
     /// nowhere else.
     #[cfg_attr(feature = "openapi", schema(required, value_type = Option<LatitudeAdvice>))]
     pub elsewhere: Option<Advice<LatitudeSuggestion>>,
+    /// Azimuths to take, for the band here; none where they would hardly narrow it.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
+    pub azimuths: Option<AzimuthAdvice>,
+}
+
+/// Effect of azimuths of the sun, or of another body or a transit, on the band here.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct AzimuthAdvice {
+    /// Standard error of one azimuth, degrees.
+    #[cfg_attr(feature = "openapi", schema(example = 0.7))]
+    pub standard_error_deg: f64,
+    /// Present band.
+    pub band: Band,
+    /// Greatest band after one azimuth on any heading.
+    pub after_one: Band,
+    /// Band after twenty azimuths on headings all round.
+    pub after_twenty: Band,
 }
 
 /// Band in some waters, with suggestions that narrow it.

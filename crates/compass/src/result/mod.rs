@@ -10,7 +10,9 @@ mod prediction;
 mod references;
 mod refusal;
 
-pub use advice::{Advice, Band, HeadingRange, HeadingSuggestion, LatitudeSuggestion, SailNext};
+pub use advice::{
+    Advice, AzimuthAdvice, Band, HeadingRange, HeadingSuggestion, LatitudeSuggestion, SailNext,
+};
 pub use analysis::{Analysis, ESTIMATOR, Epoch, LastPlace};
 pub use change::{Cause, CauseProbability, Change, Step};
 pub use diagnostic::{SampleDiagnostic, SampleReason};

@@ -1,13 +1,10 @@
 //! Command line of the study.
 
-use crate::detector::{self, Detector};
-
 /// Text for a wrong command line.
-pub(crate) const USAGE: &str = "usage: real_ships_study DETECTOR [--ships N] [--seeds SHIFT] \
+pub(crate) const USAGE: &str = "usage: real_ships_study [--ships N] [--seeds SHIFT] \
     [--rows NAME,NAME] [--every DAYS] [--threads N] [--words] [--list]";
 
 pub(crate) struct Arguments {
-    pub(crate) detector: Detector,
     /// Ships of each row.
     pub(crate) ships: u64,
     /// Shift of all seeds: what was tuned on some ships is to be judged on others.
@@ -25,7 +22,6 @@ pub(crate) struct Arguments {
 impl Arguments {
     pub(crate) fn parse(mut given: impl Iterator<Item = String>) -> Result<Arguments, String> {
         let mut arguments = Arguments {
-            detector: detector::DETECTORS[0].1,
             ships: 6,
             seeds: 0,
             rows: Vec::new(),
@@ -34,7 +30,6 @@ impl Arguments {
             words: false,
             list: false,
         };
-        let mut is_chosen = false;
         while let Some(word) = given.next() {
             let mut number = || number(&word, given.next());
             match word.as_str() {
@@ -48,17 +43,10 @@ impl Arguments {
                     let names = given.next().ok_or("--rows: names are missing")?;
                     arguments.rows = names.split(',').map(str::to_owned).collect();
                 }
-                name => {
-                    arguments.detector = detector::find(name)?;
-                    is_chosen = true;
-                }
+                _ => return Err(format!("{word} is no option")),
             }
         }
-        if is_chosen || arguments.list {
-            Ok(arguments)
-        } else {
-            Err("no detector is named".to_owned())
-        }
+        Ok(arguments)
     }
 
     pub(crate) fn has(&self, row: &str) -> bool {

@@ -171,7 +171,7 @@ fn events(arguments: &Arguments, row: &Row, seed: u64) -> Vec<Named> {
     plan.gyro_faults = 0.0;
     (row.event_of)(&mut plan);
     let log = sail_log(seed, &plan);
-    let analysis = detector::run(arguments.detector, &log);
+    let analysis = detector::run(&log);
     let happened = log.happened.iter().filter(|h| h.what == row.event);
     let seen = happened.filter(|h| row.event != Name::Storm || at_sea(&log, h));
     seen.map(|h| {

@@ -83,7 +83,7 @@ fn ship(arguments: &Arguments, row: &Row, seed: u64) -> Ship {
     let log = sail(seed, side * row.zero_off_deg);
     let models = models(arguments, seed, &log);
     let sound_day = self::models(arguments, seed, &sail(seed, 0.0)).right_day;
-    let analysis = detector::run(arguments.detector, &log);
+    let analysis = detector::run(&log);
     if arguments.words {
         print_false_reports(seed, &analysis, &log);
     }
@@ -117,7 +117,7 @@ fn models(arguments: &Arguments, seed: u64, log: &Log) -> Models {
     for day in LOOKS {
         let until = log.start.plus_seconds(day * DAY_S);
         let state = log.states.partition_point(|s| s.time <= until) - 1;
-        let analysis = run_until(arguments.detector, log, until);
+        let analysis = run_until(log, until);
         let look = look(&analysis, &log.states[state]);
         if arguments.words {
             let refusal = analysis.current_epoch().and_then(|e| e.refusal.clone());

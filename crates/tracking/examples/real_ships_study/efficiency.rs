@@ -1,6 +1,7 @@
 //! Error of the curve over its Cramér–Rao bound, on plain ships with a gyro alone.
 
 use crate::arguments::Arguments;
+use crate::detector::analyse;
 use crate::table::at_most;
 use crate::voyages::bound::{HEADINGS, bound};
 use crate::voyages::{Faults, Truth, Variety, Voyage, predicted, sail_on, true_deviation};
@@ -9,7 +10,6 @@ use binnacle_compass::angle::{TrueHeading, wrap_180};
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
-use binnacle_compass::settings::AnalysisSettings;
 use binnacle_compass::time::Timestamp;
 
 const SEEDS: u64 = 5_000_000;
@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &Arguments) {
         "14 days, gyro", "ships", "models", "error, deg", "error/bound"
     );
     for row in rows {
-        let errors = arguments.each(SEEDS, |seed| error(arguments, row, seed));
+        let errors = arguments.each(SEEDS, |seed| error(row, seed));
         let errors: Vec<Error> = errors.into_iter().flatten().collect();
         let sum = |of: fn(&Error) -> f64| errors.iter().map(of).sum::<f64>();
         let (squares, bounds) = (sum(|e| e.squares), sum(|e| e.bound));
@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &Arguments) {
     }
 }
 
-fn error(arguments: &Arguments, row: &Row, seed: u64) -> Option<Error> {
+fn error(row: &Row, seed: u64) -> Option<Error> {
     // The bound knows of no storms.
     let faults = Faults {
         storms_per_month: 0.0,
@@ -76,7 +76,7 @@ fn error(arguments: &Arguments, row: &Row, seed: u64) -> Option<Error> {
     };
     let voyage = sail_on(igrf, seed, row.variety, DAYS, &faults);
     let samples: Vec<Sample> = voyage.observations.iter().map(sample).collect();
-    let analysis = (arguments.detector)(&samples, &[], &AnalysisSettings::default());
+    let analysis = analyse(&samples, &[]);
     let model = analysis.current_epoch()?.model.clone()?;
     let Truth { h_nt, z_nt, .. } = voyage.truth;
     let squares = (0..HEADINGS).map(|k| {

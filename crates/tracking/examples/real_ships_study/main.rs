@@ -1,10 +1,10 @@
-//! Study of a detector on ships that are not as it supposes: sound ships with habits,
+//! Study of the tracker on ships that are not as it supposes: sound ships with habits,
 //! compasses whose zero is off, steps, faults, and the causes given for them.
 //!
 //! `make study-ships`, or `cargo run --release -p binnacle-tracking --example
-//! real_ships_study -- old --ships 6 --rows plain,retention_1`. Without `--rows` all rows are run, in the order of `--list`;
+//! real_ships_study -- --ships 6 --rows plain,retention_1`. Without `--rows` all rows are run, in the order of `--list`;
 //! each prints one line as soon as it is complete. The same seeds make the same voyages for
-//! every detector, and for every habit.
+//! every habit.
 
 #![allow(clippy::unwrap_used)] // a study, run by hand
 

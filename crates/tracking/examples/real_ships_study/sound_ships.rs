@@ -144,7 +144,7 @@ fn ship(arguments: &Arguments, row: &Row, seed: u64) -> Ship {
     for day in days {
         let state = &log.states[day];
         let began = Instant::now();
-        let analysis = run_until(arguments.detector, &log, state.time);
+        let analysis = run_until(&log, state.time);
         ship.seconds = began.elapsed().as_secs_f64();
         ship.looks += 1;
         match look(&analysis, state) {

@@ -55,12 +55,12 @@ pub(crate) fn run(arguments: &Arguments) {
         "step", "ships", "settled h", "90 %", "clock h", "found %", "date off min", "false/ship"
     );
     for row in rows {
-        let found = arguments.each(SEEDS, |seed| step(arguments, row, seed));
+        let found = arguments.each(SEEDS, |seed| step(row, seed));
         print(row, &found.into_iter().flatten().collect::<Vec<_>>());
     }
 }
 
-fn step(arguments: &Arguments, row: &Row, seed: u64) -> Option<Found> {
+fn step(row: &Row, seed: u64) -> Option<Found> {
     let mut plan = plan(seed, Event::Step(row.step_nt));
     plan.days = DAYS;
     if !row.has_satellite {
@@ -68,7 +68,7 @@ fn step(arguments: &Arguments, row: &Row, seed: u64) -> Option<Found> {
     }
     let log = sail_log(seed, &plan);
     let from = log.happened.iter().find(|h| h.what == Name::Step)?.from;
-    let analysis = detector::run(arguments.detector, &log);
+    let analysis = detector::run(&log);
     let reported = analysis.changes.iter().find(|c| {
         c.confirmed
             && c.cause.changes_deviation()

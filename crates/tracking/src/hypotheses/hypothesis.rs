@@ -5,7 +5,7 @@ use crate::state_space::filter::{Filter, Innovation, Marginal};
 use crate::state_space::levels::{Level, Levels};
 use crate::state_space::row::Row;
 use crate::state_space::scalar::{
-    Scalar, Silent, deviation, difference, sighted_deviation, sighted_gyro,
+    SAYS_NOTHING_DEG, Scalar, Silent, deviation, difference, sighted_deviation, sighted_gyro,
 };
 use crate::state_space::ship_state::ShipState;
 use crate::state_space::states::{ALIGNMENT, BX, BY, GYRO, STATES, USUAL_H_NT};
@@ -23,7 +23,7 @@ use std::sync::Arc;
 const RAMP_DEG2_PER_S: f64 = 1.0 / 86_400.0;
 /// Memory and standard deviation of a storm's variation, where H is usual.
 const STORM_S: f64 = 3600.0;
-const STORM_DEG: f64 = 1.2;
+const STORM_DEG: f64 = 1.4;
 
 /// Change of the induced parameters by work that leaves them, over the population.
 const WORKED_INDUCED: f64 = 0.4;
@@ -37,8 +37,6 @@ const AMID_DEG: f64 = 1.5;
 const OPEN_DEG: f64 = 0.7;
 /// Standard deviation of a stuck instrument's readings, degrees.
 const HELD_DEG: f64 = 0.3;
-/// Greatest loss of a row.
-const WORST_LOSS: f64 = 18.0;
 /// Ratio of a prediction's variance to the reading's from which the reading teaches much.
 const TEACHES: f64 = 20.0;
 
@@ -57,7 +55,7 @@ pub(crate) struct Event {
     pub(crate) ship_at_end: Option<Box<ShipState>>,
     /// True if the ship was in port meanwhile.
     pub(crate) in_port: bool,
-    /// Heading at which an instrument stands, degrees.
+    /// Heading at which a failed instrument stands, degrees; none of one that shows any.
     pub(crate) held_deg: Option<f64>,
     /// Distance sailed before it, nautical miles.
     pub(crate) from_nm: f64,
@@ -137,14 +135,38 @@ pub(crate) struct Read {
 impl Read {
     /// Returns the loss of the row: one wild instrument spoils all that it is compared with.
     fn loss(&self) -> f64 {
-        let loss = self.deviation.loss() + self.difference.map_or(0.0, Innovation::loss);
-        loss.min(WORST_LOSS)
+        let both = [Some(self.deviation), self.difference];
+        let losses = both.iter().flatten().map(|innovation| innovation.loss());
+        let worst = both
+            .iter()
+            .flatten()
+            .map(|innovation| wild_loss(*innovation));
+        losses.sum::<f64>().min(worst.fold(0.0, f64::max))
     }
 
     /// Returns true if the row says more than was known before: then a wild reading would do
     /// harm that later ones take long to mend.
     pub(crate) fn teaches(&self) -> bool {
         self.deviation.variance > TEACHES * self.load.variance
+    }
+}
+
+/// Returns the loss of a reading that is wild: it is improbable, and then says nothing.
+fn wild_loss(innovation: Innovation) -> f64 {
+    let says_nothing = SAYS_NOTHING_DEG * SAYS_NOTHING_DEG;
+    (says_nothing / innovation.variance).max(1.0).ln() - 2.0 * WILD.ln()
+}
+
+impl Row {
+    /// Returns how far a failed instrument is off, nearly: by the other reference, or by the
+    /// deviation that is left.
+    fn missed_deg(&self, kind: Kind, read: &Read) -> f64 {
+        match (kind, self.gyro_deg, self.satellite_deg) {
+            (Kind::FailedGyro | Kind::FailedSatellite, Some(gyro), Some(satellite)) => {
+                wrap_180(gyro - satellite)
+            }
+            _ => read.deviation.value,
+        }
     }
 }
 
@@ -180,9 +202,9 @@ impl Hypothesis {
 
     fn silent(&self) -> Silent {
         Silent {
-            compass: self.has(Kind::StuckCard),
-            gyro: self.has(Kind::StuckGyro),
-            satellite: self.has(Kind::StuckSatellite),
+            compass: self.has(Kind::FailedCard),
+            gyro: self.has(Kind::FailedGyro),
+            satellite: self.has(Kind::FailedSatellite),
         }
     }
 
@@ -251,25 +273,33 @@ impl Hypothesis {
             },
             load,
         };
-        self.filter.log_likelihood -= 0.5 * read.loss();
-        self.read_held(row);
+        let loss = if self.holds(row) {
+            read.difference.map_or(0.0, Innovation::loss)
+        } else {
+            read.loss()
+        };
+        self.filter.log_likelihood -= 0.5 * loss;
+        self.read_failed(row, &read);
         read
     }
 
     /// Reads an azimuth in the circumstances of the last row. Alongside a quay it checks the gyro
     /// alone: the berth's steel moves the compass.
     pub(crate) fn read_azimuth(&mut self, azimuth: &Azimuth, row: &Row) {
-        let mut loss = 0.0;
-        if azimuth.kind() != AzimuthKind::Quay && !self.has(Kind::StuckCard) {
+        let mut losses = 0.0;
+        let mut read = |innovation: Innovation| {
+            losses += innovation.loss().min(wild_loss(innovation));
+        };
+        if azimuth.kind() != AzimuthKind::Quay && !self.has(Kind::FailedCard) {
             let scalar = sighted_deviation(row, &self.filter.mean, azimuth);
-            loss += self.filter.update(&scalar).loss();
+            read(self.filter.update(&scalar));
         }
         if let Some(scalar) = sighted_gyro(row, &self.filter.mean, azimuth)
-            && !self.has(Kind::StuckGyro)
+            && !self.has(Kind::FailedGyro)
         {
-            loss += self.filter.update(&scalar).loss();
+            read(self.filter.update(&scalar));
         }
-        self.filter.log_likelihood -= 0.5 * loss.min(WORST_LOSS);
+        self.filter.log_likelihood -= 0.5 * losses;
     }
 
     /// Returns the filter after a port call like her others.
@@ -280,27 +310,29 @@ impl Hypothesis {
         filter
     }
 
-    /// Returns true if an instrument is stuck without which the row shows no deviation.
+    /// Returns true if an instrument has failed without which the row shows no deviation.
     fn holds(&self, row: &Row) -> bool {
-        let is_alone = row.gyro_deg.is_none() || row.satellite_deg.is_none();
-        self.has(Kind::StuckCard)
-            || (is_alone && (self.has(Kind::StuckGyro) || self.has(Kind::StuckSatellite)))
+        match (row.gyro_deg, row.satellite_deg) {
+            _ if self.has(Kind::FailedCard) => true,
+            (Some(_), None) => self.has(Kind::FailedGyro),
+            (None, Some(_)) => self.has(Kind::FailedSatellite),
+            _ => false,
+        }
     }
 
-    /// Reads what stuck instruments show: the same as before.
-    fn read_held(&mut self, row: &Row) {
+    /// Reads what failed instruments show: the same as before, or any heading.
+    fn read_failed(&mut self, row: &Row, read: &Read) {
         let lasting = self.events.iter().filter(|event| event.until.is_none());
-        let held = lasting.filter_map(|event| {
-            let shown = row.shown_deg(event.kind)?;
-            Some(wrap_180(shown - event.held_deg?))
+        let losses = lasting.filter_map(|event| {
+            let shown_deg = row.shown_deg(event.kind)?;
+            let (value, sd) = match event.held_deg {
+                Some(held_deg) => (wrap_180(shown_deg - held_deg), HELD_DEG),
+                None => (row.missed_deg(event.kind, read), SAYS_NOTHING_DEG),
+            };
+            let variance = sd * sd;
+            Some(Innovation { value, variance }.loss() + variance.ln())
         });
-        let losses: f64 = held
-            .map(|value| {
-                let variance = HELD_DEG * HELD_DEG;
-                Innovation { value, variance }.loss() + variance.ln()
-            })
-            .sum();
-        self.filter.log_likelihood -= 0.5 * losses;
+        self.filter.log_likelihood -= 0.5 * losses.sum::<f64>();
     }
 
     /// Counts how improbable it is that its lasting events go on until a row.
@@ -331,6 +363,17 @@ impl Hypothesis {
 
     /// Returns the hypothesis with one more event.
     pub(crate) fn with_event(&self, kind: Kind, begin: &Begin, log_prior: f64) -> Hypothesis {
+        self.with_failure(kind, begin, None, log_prior)
+    }
+
+    /// Returns the hypothesis with one more event, in which an instrument stands at a heading.
+    pub(crate) fn with_failure(
+        &self,
+        kind: Kind,
+        begin: &Begin,
+        held_deg: Option<f64>,
+        log_prior: f64,
+    ) -> Hypothesis {
         let mut next = self.clone();
         let states = kind.returning_states();
         let before =
@@ -346,7 +389,7 @@ impl Hypothesis {
             ship_before: Box::new(begin.ship.clone()),
             ship_at_end: None,
             in_port: begin.in_port,
-            held_deg: begin.row.shown_deg(kind),
+            held_deg,
             from_nm: begin.row.sailed_nm,
         };
         next.events.push(Supposed {
@@ -374,11 +417,16 @@ impl Hypothesis {
         }
     }
 
-    /// Returns the hypotheses in which one of the lasting events ended within the step before
-    /// the next row.
-    pub(crate) fn endings(&self, begin: &Begin, step: Stay) -> Vec<Hypothesis> {
+    /// Returns the hypotheses in which one of the lasting events of some kinds ended within the
+    /// step before the next row.
+    pub(crate) fn endings(
+        &self,
+        begin: &Begin,
+        step: Stay,
+        is_meant: impl Fn(Kind) -> bool,
+    ) -> Vec<Hypothesis> {
         let lasting = self.events.iter().enumerate();
-        let lasting = lasting.filter(|(_, event)| event.until.is_none());
+        let lasting = lasting.filter(|(_, e)| e.until.is_none() && is_meant(e.kind));
         let ended = lasting.filter_map(|(i, event)| {
             let probability = match event.kind.row().ending {
                 Ending::InPort(share) if begin.in_port => share * event.probability,

@@ -29,12 +29,14 @@ pub(crate) enum Kind {
     Storm,
     /// Local anomaly of the crust.
     Anomaly,
-    /// Card that does not turn.
-    StuckCard,
-    /// Gyro that says nothing.
-    StuckGyro,
-    /// Satellite compass that says nothing.
-    StuckSatellite,
+    /// Card that stands still, or swings by itself.
+    FailedCard,
+    /// Gyro that stands still, or shows any heading.
+    FailedGyro,
+    /// Satellite compass that stands still, or shows any heading.
+    FailedSatellite,
+    /// Step of the field at the compass that is gone within hours: steel or a current near it.
+    Deflection,
 }
 
 /// State that an event moves, with the standard deviation of its jump.
@@ -133,7 +135,7 @@ const YEAR_S: f64 = 365.25 * DAY_S;
 const USUAL_KN: f64 = 12.0;
 
 /// All kinds.
-pub(crate) const KINDS: [KindRow; 13] = [
+pub(crate) const KINDS: [KindRow; 14] = [
     KindRow {
         kind: Kind::Strike,
         a_year: 1.0,
@@ -219,25 +221,32 @@ pub(crate) const KINDS: [KindRow; 13] = [
         ending: Ending::AfterMiles(25.0),
     },
     KindRow {
-        kind: Kind::StuckCard,
+        kind: Kind::FailedCard,
         a_year: 0.1,
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(DAY_S),
     },
     KindRow {
-        kind: Kind::StuckGyro,
+        kind: Kind::FailedGyro,
         a_year: 0.1,
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(DAY_S),
     },
     KindRow {
-        kind: Kind::StuckSatellite,
+        kind: Kind::FailedSatellite,
         a_year: 0.1,
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(DAY_S),
+    },
+    KindRow {
+        kind: Kind::Deflection,
+        a_year: 0.05,
+        a_call: 0.0,
+        jumps: &[jump(BX, 1.2), jump(BY, 1.2)],
+        ending: Ending::After(3.0 * HOUR_S),
     },
 ];
 
@@ -256,12 +265,12 @@ impl KindRow {
 }
 
 impl Row {
-    /// Returns the reading of the instrument that is stuck in such an event.
+    /// Returns the reading of the instrument that fails in such an event.
     pub(crate) fn shown_deg(&self, kind: Kind) -> Option<f64> {
         match kind {
-            Kind::StuckCard => Some(self.compass_deg),
-            Kind::StuckGyro => self.gyro_deg.map(|deg| deg + self.variation_deg),
-            Kind::StuckSatellite => self.satellite_deg.map(|deg| deg + self.variation_deg),
+            Kind::FailedCard => Some(self.compass_deg),
+            Kind::FailedGyro => self.gyro_deg.map(|deg| deg + self.variation_deg),
+            Kind::FailedSatellite => self.satellite_deg.map(|deg| deg + self.variation_deg),
             _ => None,
         }
     }
@@ -292,42 +301,45 @@ impl Kind {
         }
     }
 
+    /// Returns true for an event whose end shows in one row: that is looked for after each.
+    pub(crate) fn ends_at_once(self) -> bool {
+        self.is_sudden() || self.is_failed()
+    }
+
     /// Returns true for an event that moves a reference.
     pub(crate) fn moves_a_reference(self) -> bool {
         let mut jumps = self.row().jumps.iter();
         jumps.any(|jump| [GYRO, SATELLITE, SETTLING].contains(&jump.state))
     }
 
-    /// Returns true for an instrument that stands still.
-    pub(crate) fn is_stuck(self) -> bool {
+    /// Returns true for an instrument that says nothing.
+    pub(crate) fn is_failed(self) -> bool {
         matches!(
             self,
-            Kind::StuckCard | Kind::StuckGyro | Kind::StuckSatellite
+            Kind::FailedCard | Kind::FailedGyro | Kind::FailedSatellite
         )
     }
 
-    /// Returns true for an event that can happen to a ship with the reference of a row. Whatever
+    /// Returns true for an event that can happen to a ship with the references of a row. Whatever
     /// passes by within hours is a current to a ship that has her course alone.
     pub(crate) fn can_happen(self, row: &Row) -> bool {
-        let needs_heading = matches!(
-            self,
-            Kind::Storm
-                | Kind::Anomaly
-                | Kind::GyroStep
-                | Kind::SatelliteStep
-                | Kind::GyroSettling
-                | Kind::GyroRamp
-                | Kind::StuckGyro
-                | Kind::StuckSatellite
-        );
-        row.course.is_none() || !needs_heading
+        match self {
+            Kind::GyroStep | Kind::GyroSettling | Kind::GyroRamp | Kind::FailedGyro => {
+                row.gyro_deg.is_some()
+            }
+            Kind::SatelliteStep | Kind::FailedSatellite => row.satellite_deg.is_some(),
+            Kind::Storm | Kind::Anomaly | Kind::Deflection => row.course.is_none(),
+            Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift | Kind::FailedCard => {
+                true
+            }
+        }
     }
 
     /// Returns true for an event that leaves another deviation.
     pub(crate) fn changes_deviation(self) -> bool {
         matches!(
             self,
-            Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift
+            Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift | Kind::Deflection
         )
     }
 
@@ -344,7 +356,7 @@ impl Kind {
     /// Returns the states that the end of such an event sets back.
     pub(crate) fn returning_states(self) -> Vec<usize> {
         match self {
-            Kind::Strike | Kind::Cargo => (0..PARAMETERS).collect(),
+            Kind::Strike | Kind::Cargo | Kind::Deflection => (0..PARAMETERS).collect(),
             Kind::GyroStep | Kind::GyroRamp => vec![GYRO],
             Kind::SatelliteStep => vec![SATELLITE],
             Kind::Anomaly => vec![ANOMALY, ANOMALY + 1],

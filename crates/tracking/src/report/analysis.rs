@@ -14,15 +14,12 @@ use super::references::References;
 use super::row_times::RowTimes;
 use super::voyage::read_voyage;
 use crate::state_space::levels::{Level, Levels};
-use binnacle_analysis::analyse::berth_stays::{add_berth_changes, mark_alongside};
-use binnacle_analysis::analyse::reading::{Reading, readings};
-use binnacle_analysis::analyse::stuck_compass::mark_stuck;
+use binnacle_analysis::readings::berth_stays::{add_berth_changes, mark_alongside};
+use binnacle_analysis::readings::reading::{Reading, readings};
+use binnacle_analysis::readings::stuck_compass::mark_stuck;
 use binnacle_compass::coverage::{Coverage, coverage};
 use binnacle_compass::model::ReferenceGrade;
-use binnacle_compass::result::{Analysis, NoiseLevels};
-
-/// Name of the estimator, kept with its models.
-const ESTIMATOR: &str = "hypotheses-1";
+use binnacle_compass::result::{Analysis, ESTIMATOR, NoiseLevels};
 
 /// Analyses all samples of one compass.
 pub fn analyse(input: &Input<'_>) -> Analysis {

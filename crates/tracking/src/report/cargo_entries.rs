@@ -8,7 +8,7 @@
 //! for weeks.
 
 use super::epochs::Span;
-use binnacle_analysis::analyse::reading::Reading;
+use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::result::{Cause, SampleReason};
 use binnacle_compass::time::Timestamp;

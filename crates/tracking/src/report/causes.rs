@@ -7,7 +7,7 @@
 use crate::hypotheses::hypothesis::Event;
 use crate::hypotheses::kinds::Kind;
 use crate::weighing::records::{Class, Detected};
-use binnacle_analysis::analyse::logbook_rules::reported_cause;
+use binnacle_analysis::readings::logbook_rules::reported_cause;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Cause, CauseProbability};
 use binnacle_compass::time::Timestamp;
@@ -18,6 +18,8 @@ const REPORTED_FACTOR: f64 = 100.0;
 /// blow and not work.
 const STRUCK_AT_SEA: f64 = 0.9;
 const STRUCK_IN_PORT: f64 = 0.1;
+/// Probability that a change of the permanent magnetism in port is cargo.
+const LIFTED: f64 = 0.5;
 /// Sizes that errors have in storms, over anomalies and by faults of the compass, degrees where
 /// H is 24 µT. The largest storms on record come to about eight; a damaged card moves by any
 /// number.
@@ -90,11 +92,6 @@ fn add(weights: &mut Vec<CauseProbability>, cause: Cause, probability: f64) {
 
 /// Returns the causes of a kind of event, each with its share.
 fn shares(kind: Kind, event: &Event, known: &Circumstances) -> Vec<(Cause, f64)> {
-    let struck = if event.in_port {
-        STRUCK_IN_PORT
-    } else {
-        STRUCK_AT_SEA
-    };
     let disturbance_deg = known.disturbance_deg.unwrap_or(0.0);
     let square = |deg: f64| (disturbance_deg / deg).powi(2);
     let by_fault = square(FAULT_DEG) / (1.0 + square(FAULT_DEG));
@@ -115,10 +112,17 @@ fn shares(kind: Kind, event: &Event, known: &Circumstances) -> Vec<(Cause, f64)>
             (Cause::MagneticCargo, DISCHARGED),
             (Cause::AdjustmentOrRepair, 1.0 - DISCHARGED),
         ],
-        Kind::Strike => vec![
-            (Cause::LightningOrShock, struck),
-            (Cause::AdjustmentOrRepair, 1.0 - struck),
+        // Steel that was lifted by magnets is cargo without much induced magnetism.
+        Kind::Strike if event.in_port => vec![
+            (Cause::MagneticCargo, LIFTED),
+            (Cause::LightningOrShock, STRUCK_IN_PORT),
+            (Cause::AdjustmentOrRepair, 1.0 - LIFTED - STRUCK_IN_PORT),
         ],
+        Kind::Strike => vec![
+            (Cause::LightningOrShock, STRUCK_AT_SEA),
+            (Cause::AdjustmentOrRepair, 1.0 - STRUCK_AT_SEA),
+        ],
+        Kind::Deflection => vec![(Cause::Unknown, 1.0)],
         // Work is not undone at a port call.
         Kind::Cargo if event.until.is_some() => vec![(Cause::MagneticCargo, 1.0)],
         Kind::Cargo => vec![
@@ -127,15 +131,15 @@ fn shares(kind: Kind, event: &Event, known: &Circumstances) -> Vec<(Cause, f64)>
         ],
         Kind::Alignment => vec![(Cause::Alignment, 1.0)],
         Kind::ShipDrift => vec![(Cause::Drift, 1.0)],
-        Kind::StuckCard => vec![(Cause::CompassFault, 1.0)],
+        Kind::FailedCard => vec![(Cause::CompassFault, 1.0)],
         Kind::Storm => passing(Cause::MagneticStorm, (-square(STORM_DEG)).exp()),
         Kind::Anomaly => passing(Cause::LocalAnomaly, 1.0 / (1.0 + square(ANOMALY_DEG))),
         Kind::GyroStep
         | Kind::SatelliteStep
         | Kind::GyroSettling
         | Kind::GyroRamp
-        | Kind::StuckGyro
-        | Kind::StuckSatellite => vec![(Cause::ReferenceFault, 1.0)],
+        | Kind::FailedGyro
+        | Kind::FailedSatellite => vec![(Cause::ReferenceFault, 1.0)],
     }
 }
 

@@ -4,9 +4,9 @@
 use super::faults::{Faults, Trust};
 use super::references::References;
 use super::voyage::TrackedRow;
-use binnacle_analysis::analyse::reading::Reading;
 use binnacle_analysis::estimate::weight;
 use binnacle_analysis::fit::{Observation, REJECTED_BELOW};
+use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::angle::{Deviation, wrap_180};
 use binnacle_compass::model::Model;
 use binnacle_compass::result::{NoiseLevels, SampleReason};

@@ -3,7 +3,7 @@
 use crate::hypotheses::kinds::Kind;
 use crate::state_space::transition::SETTLING_S;
 use crate::weighing::records::{Class, Detected};
-use binnacle_analysis::analyse::reading::Reading;
+use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::result::SampleReason;
 use binnacle_compass::time::Timestamp;
 
@@ -100,10 +100,10 @@ pub(super) enum FaultyReference {
 /// Returns the reference whose fault a kind of event is.
 pub(super) fn reference(kind: Kind) -> Option<FaultyReference> {
     match kind {
-        Kind::GyroStep | Kind::GyroSettling | Kind::GyroRamp | Kind::StuckGyro => {
+        Kind::GyroStep | Kind::GyroSettling | Kind::GyroRamp | Kind::FailedGyro => {
             Some(FaultyReference::Gyro)
         }
-        Kind::SatelliteStep | Kind::StuckSatellite => Some(FaultyReference::Satellite),
+        Kind::SatelliteStep | Kind::FailedSatellite => Some(FaultyReference::Satellite),
         _ => None,
     }
 }

@@ -3,7 +3,7 @@
 use super::cargo_entries::{self, ContradictedEntry};
 use super::voyage::Voyage;
 use crate::state_space::ship_state::ShipState;
-use binnacle_analysis::analyse::reading::Reading;
+use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::model::{Model, ReferenceGrade};

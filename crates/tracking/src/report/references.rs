@@ -2,8 +2,8 @@
 
 use super::faults::Trust;
 use super::voyage::LoggedWork;
-use binnacle_analysis::analyse::reading::{Reading, heading_reading};
 use binnacle_analysis::fit::{HeadingReading, compare_references};
+use binnacle_analysis::readings::reading::{Reading, heading_reading};
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::result::{FitError, ReferenceCheck};
 use std::ops::Range;

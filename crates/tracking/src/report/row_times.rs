@@ -1,7 +1,7 @@
 //! Times of the rows that were read, and the dates of events between them.
 
 use super::voyage::TrackedRow;
-use binnacle_analysis::analyse::logbook_rules::reported_cause;
+use binnacle_analysis::readings::logbook_rules::reported_cause;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::time::Timestamp;
 

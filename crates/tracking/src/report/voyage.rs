@@ -5,7 +5,7 @@ use super::predictions::WatchPredictions;
 use crate::state_space::row::Placed;
 use crate::state_space::ship_state::ShipState;
 use crate::weighing::tracker::Tracker;
-use binnacle_analysis::analyse::reading::Reading;
+use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::azimuth::Azimuth;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::result::SampleReason;

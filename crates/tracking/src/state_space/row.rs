@@ -1,10 +1,10 @@
 //! Readings of one time as the tracker takes them, whatever the hypothesis.
 
 use super::states::RETENTION_S;
-use binnacle_analysis::analyse::steady_course::LEAST_SOG_KN;
 use binnacle_analysis::estimate::{Scatter, WhiteNoise};
 use binnacle_analysis::fit::Observation;
 use binnacle_analysis::gyro_speed_error::northerly_speed_error_deg;
+use binnacle_analysis::readings::steady_course::LEAST_SOG_KN;
 use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation, wrap_180};
 use binnacle_compass::position::Position;
 use binnacle_compass::sample::{Sample, SourceId};
@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 const DAY_S: f64 = 86_400.0;
 /// Time between rows, beyond that of sailing from one to the other, that counts as a port
 /// call, seconds. Where the speed is not known the ship sails at the usual one, knots.
-const PORT_GAP_S: f64 = 2.5 * 3600.0;
+pub(crate) const PORT_GAP_S: f64 = 2.5 * 3600.0;
 const USUAL_KN: f64 = 10.0;
 /// Noise of the velocity over the ground across it in a mean of minutes, knots: receiver and
 /// seaway. It is a degree at 6 knots.

@@ -22,7 +22,7 @@ const REFERENCE_SHARE: f64 = 0.6;
 /// where it is less.
 const LEAST_PER_COMPASS: f64 = 0.1;
 /// Standard deviation of a reading that says nothing, degrees.
-const SAYS_NOTHING_DEG: f64 = 20.0;
+pub(crate) const SAYS_NOTHING_DEG: f64 = 20.0;
 
 /// Greatest speed across the heading over the speed over ground.
 const MOST_ACROSS: f64 = 0.7;

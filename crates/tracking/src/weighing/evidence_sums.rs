@@ -6,7 +6,8 @@
 //! it is judged by a filter of its own.
 
 use crate::hypotheses::hypothesis::Read;
-use crate::hypotheses::kinds::{Jump, KindRow};
+use crate::hypotheses::kinds::{Jump, Kind, KindRow};
+use crate::state_space::filter::Innovation;
 use crate::state_space::row::Row;
 use crate::state_space::scalar::{Silent, gyro_share};
 use crate::state_space::states::{ALIGNMENT, BX, BY, GYRO, SATELLITE, SETTLING};
@@ -15,10 +16,13 @@ use nalgebra::{DMatrix, DVector};
 /// States whose jumps are looked for.
 pub(crate) const WATCHED: [usize; 5] = [BX, BY, ALIGNMENT, GYRO, SATELLITE];
 /// Largest square of an innovation that counts as a disturbance: a wild reading is no more.
-const LARGEST_SQUARE: f64 = 16.0;
+const LARGEST_SQUARE: f64 = 18.0;
 /// Cost in squares of taking the noise for a disturbance's: twice the logarithm of the ratio of
 /// standard deviations.
 const WIDER_COST: f64 = 2.0;
+/// Cost of a reading that says nothing against one of a quarter of a degree, without what
+/// [`WIDER_COST`] has of it.
+const ANY_HEADING_COST: f64 = 3.3;
 /// Largest innovation that counts for a jump, standard deviations.
 const LARGEST_SD: f64 = 6.0;
 /// Innovations over which the usual square is taken.
@@ -32,6 +36,8 @@ pub(crate) struct EvidenceSums {
     score: [f64; SUMS],
     /// Squares of innovations beyond what is usual.
     excess: f64,
+    /// Log Bayes factors of a card that shows any heading, and of such a reference, nearly.
+    any_heading: [f64; 2],
     /// Usual square of an innovation; none before the first.
     usual: Option<f64>,
 }
@@ -47,17 +53,18 @@ impl EvidenceSums {
         };
         let load = &read.load.load;
         let main = [load[BX], load[BY], 1.0, gyro, satellite];
-        self.add_scalar(&main, read.deviation);
-        if let Some(difference) = read.difference {
-            self.add_scalar(&[0.0, 0.0, 0.0, 1.0, -1.0], difference);
-        }
+        let of_card = self.add_scalar(&main, read.deviation);
+        let of_reference = match read.difference {
+            Some(difference) => self.add_scalar(&[0.0, 0.0, 0.0, 1.0, -1.0], difference),
+            None => of_card,
+        };
+        self.any_heading[0] += of_card;
+        self.any_heading[1] += of_reference;
     }
 
-    fn add_scalar(
-        &mut self,
-        load: &[f64; SUMS],
-        innovation: crate::state_space::filter::Innovation,
-    ) {
+    /// Adds an innovation. Returns by how much it is likelier of an instrument that shows any
+    /// heading.
+    fn add_scalar(&mut self, load: &[f64; SUMS], innovation: Innovation) -> f64 {
         let z_squared = innovation.z_squared();
         let capped = (LARGEST_SD * LARGEST_SD / z_squared).sqrt().min(1.0);
         let weight = 1.0 / innovation.variance;
@@ -70,7 +77,9 @@ impl EvidenceSums {
         let square = z_squared.min(LARGEST_SQUARE);
         let usual = self.usual.unwrap_or(1.0);
         self.usual = Some(usual + (square - usual) / USUAL_ROWS);
-        self.excess += square - usual - WIDER_COST;
+        let excess = square - usual - WIDER_COST;
+        self.excess += excess;
+        0.5 * excess - ANY_HEADING_COST
     }
 
     /// Returns the sums since an earlier time.
@@ -83,10 +92,14 @@ impl EvidenceSums {
             }
         }
         sums.excess -= earlier.excess;
+        for (sum, earlier) in sums.any_heading.iter_mut().zip(earlier.any_heading) {
+            *sum -= earlier;
+        }
         sums
     }
 
-    /// Returns the greatest log likelihood ratio of any one state's jump of any size.
+    /// Returns the greatest log likelihood ratio of a jump of any size: of any one state, or of
+    /// (bx, by), which may not show on the heading after it.
     pub(crate) fn greatest(&self) -> f64 {
         let of = |i: usize| {
             let information = self.information[i][i];
@@ -96,7 +109,15 @@ impl EvidenceSums {
                 0.0
             }
         };
-        (0..SUMS).map(of).fold(0.0, f64::max)
+        let [[xx, xy], [_, yy]] = [0, 1].map(|i| [0, 1].map(|j| self.information[i][j]));
+        let [x, y] = [self.score[0], self.score[1]];
+        let determinant = xx * yy - xy * xy;
+        let both = if determinant > 1e-9 * xx * yy {
+            0.5 * (yy * x * x - 2.0 * xy * x * y + xx * y * y) / determinant
+        } else {
+            0.0
+        };
+        (0..SUMS).map(of).fold(both, f64::max)
     }
 
     /// Returns empty sums that know the usual square.
@@ -110,6 +131,12 @@ impl EvidenceSums {
     /// Returns the squares beyond the usual.
     pub(crate) fn excess(&self) -> f64 {
         self.excess
+    }
+
+    /// Returns the logarithm of the Bayes factor of an instrument that shows any heading against
+    /// a sound one, nearly.
+    pub(crate) fn log_factor_of_any_heading(&self, kind: Kind) -> f64 {
+        self.any_heading[usize::from(kind != Kind::FailedCard)]
     }
 
     /// Returns the logarithm of the Bayes factor of a kind's jump against none.

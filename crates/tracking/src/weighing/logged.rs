@@ -18,7 +18,7 @@ impl Tracker {
             time: row.time,
             ship: self.ship(&row),
             row: row.clone(),
-            in_port: true,
+            in_port: !matches!(kind, LogbookKind::Lightning | LogbookKind::Shock),
         };
         if kind.ends_an_epoch() {
             for hypothesis in &mut self.bank {
@@ -39,6 +39,7 @@ impl Tracker {
             }
         }
         self.bank.extend(more);
+        self.limit();
         self.learning.restart(&self.bank[0]);
     }
 
@@ -65,5 +66,6 @@ impl Tracker {
             }
         }
         self.bank.extend(more);
+        self.limit();
     }
 }

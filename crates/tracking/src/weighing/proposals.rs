@@ -9,7 +9,7 @@ use crate::state_space::transition::Transition;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::time::Timestamp;
 
-/// Starts of an event that are weighed at a time.
+/// Starts of an event between rows that are weighed at a time.
 const STARTS: usize = 2;
 /// Log posterior ratio from which an event is supposed.
 const SUPPOSED: f64 = -4.0;
@@ -38,16 +38,27 @@ struct Start {
     /// Log prior of the event there, and its log posterior ratio.
     log_prior: f64,
     score: f64,
+    /// True if the instrument that fails stands still.
+    stands: bool,
 }
 
-/// Likeliest starts of a kind, the best first.
+/// Likeliest starts of a kind: between rows, the best first, and in a gap. The sums hardly tell
+/// an event in a gap from one at the first turn after it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Starts([Option<Start>; STARTS]);
+struct Starts {
+    between_rows: [Option<Start>; STARTS],
+    in_gap: Option<Start>,
+}
 
 impl Starts {
-    fn offer(&mut self, start: Start) {
+    fn offer(&mut self, start: Start, is_in_gap: bool) {
         let mut next = Some(start);
-        for place in &mut self.0 {
+        let places = if is_in_gap {
+            std::slice::from_mut(&mut self.in_gap)
+        } else {
+            &mut self.between_rows
+        };
+        for place in places {
             let is_better = match (&next, &place) {
                 (Some(next), Some(known)) => next.score > known.score,
                 (next, _) => next.is_some(),
@@ -59,7 +70,11 @@ impl Starts {
     }
 
     fn iter(&self) -> impl Iterator<Item = Start> {
-        self.0.iter().flatten().copied()
+        self.between_rows
+            .iter()
+            .chain([&self.in_gap])
+            .flatten()
+            .copied()
     }
 }
 
@@ -125,12 +140,13 @@ impl Tracker {
                     place,
                     log_prior,
                     score,
+                    stands: false,
                 };
                 proposals.push(Proposal { kind, start });
             }
         }
         for Proposal { kind, start } in &proposals {
-            self.replay(start.place, kind.kind, start.log_prior);
+            self.replay(kind.kind, *start);
         }
         let tried = proposals.iter().map(|p| self.tried_at(p.kind, p.start));
         self.tried.extend(tried.collect::<Vec<_>>());
@@ -158,7 +174,7 @@ impl Tracker {
         let tried = self.tried_at(kind, start);
         if !self.was_tried(kind.kind, tried.from, start.score) {
             self.tried.push(tried);
-            self.replay(start.place, kind.kind, start.log_prior);
+            self.replay(kind.kind, start);
         }
     }
 
@@ -170,36 +186,39 @@ impl Tracker {
         }
     }
 
-    /// Returns true if an instrument stood since a row while the ship turned by the last two
-    /// rows: one may be wild.
+    /// Returns true if an instrument stood since a row while the ship turned, by the two rows
+    /// until then and the last two: one of each may be wild.
     fn seems_stuck(&self, kind: Kind, after: usize) -> bool {
-        let first = &self.rows[(after - self.first_kept).saturating_sub(1)];
         let count = self.rows.len();
-        if count < 2 {
+        let first = after - self.first_kept;
+        if first < 2 || count < first + 2 {
             return false;
         }
+        let pairs = [first - 2, first - 1].map(|a| [count - 2, count - 1].map(|b| (a, b)));
         let turned = |of: fn(&Row) -> Option<f64>| {
-            let turned = |last: &Row| {
-                let both = of(first).zip(of(last));
+            pairs.as_flattened().iter().map(move |(a, b)| {
+                let both = of(&self.rows[*a]).zip(of(&self.rows[*b]));
                 both.map_or(0.0, |(a, b)| wrap_180(b - a).abs())
-            };
-            [count - 2, count - 1].map(|k| turned(&self.rows[k]))
+            })
         };
-        let compass = turned(|row| Some(row.compass_deg));
-        let gyro = turned(|row| row.gyro_deg);
-        let satellite = turned(|row| row.satellite_deg);
-        let course = turned(|row| row.course.map(|course| course.deg));
-        let course = course.map(|deg| deg - DRIFT_ANGLE_DEG);
-        let (own, others) = match kind {
-            Kind::StuckCard if first.course.is_some() => (compass, [course, course]),
-            Kind::StuckCard => (compass, [gyro, satellite]),
-            Kind::StuckGyro => (gyro, [compass, satellite]),
-            _ => (satellite, [compass, gyro]),
-        };
-        own.iter().all(|deg| *deg < STOOD_DEG)
-            && others
-                .iter()
-                .any(|other| other.iter().all(|deg| *deg > TURNED_DEG))
+        let stood = |of| turned(of).all(|deg| deg < STOOD_DEG);
+        let moved = |of, least_deg: f64| turned(of).all(|deg| deg > least_deg);
+        let compass = |row: &Row| Some(row.compass_deg);
+        let gyro = |row: &Row| row.gyro_deg;
+        let satellite = |row: &Row| row.satellite_deg;
+        let course = |row: &Row| row.course.map(|course| course.deg);
+        match kind {
+            Kind::FailedCard => {
+                stood(compass)
+                    && (moved(gyro, TURNED_DEG)
+                        || moved(satellite, TURNED_DEG)
+                        || moved(course, TURNED_DEG + DRIFT_ANGLE_DEG))
+            }
+            Kind::FailedGyro => {
+                stood(gyro) && (moved(compass, TURNED_DEG) || moved(satellite, TURNED_DEG))
+            }
+            _ => stood(satellite) && (moved(compass, TURNED_DEG) || moved(gyro, TURNED_DEG)),
+        }
     }
 
     /// Returns the log prior of an event of a kind between a checkpoint and the next; none if it
@@ -225,12 +244,14 @@ impl Tracker {
             let greatest = sums.greatest();
             for (kind, starts) in KINDS.iter().zip(&mut likeliest) {
                 let disturbed = 0.5 * sums.excess();
+                let stands = kind.kind.is_failed() && self.seems_stuck(kind.kind, checkpoint.after);
                 let factor = match kind.kind {
+                    kind if kind.is_failed() && !stands => sums.log_factor_of_any_heading(kind),
                     Kind::Storm
                     | Kind::Anomaly
-                    | Kind::StuckCard
-                    | Kind::StuckGyro
-                    | Kind::StuckSatellite => disturbed,
+                    | Kind::FailedCard
+                    | Kind::FailedGyro
+                    | Kind::FailedSatellite => disturbed,
                     Kind::ShipDrift if greatest >= GROWTH_SEEN => {
                         sums.log_bayes_factor(Kind::Strike.row())
                     }
@@ -249,16 +270,16 @@ impl Tracker {
                     continue;
                 };
                 let score = factor + log_prior;
-                if score <= least
-                    || (kind.kind.is_stuck() && !self.seems_stuck(kind.kind, checkpoint.after))
-                {
+                if score <= least {
                     continue;
                 }
-                starts.offer(Start {
+                let start = Start {
                     place,
                     log_prior,
                     score,
-                });
+                    stands,
+                };
+                starts.offer(start, checkpoint.before_gap);
             }
         }
         likeliest
@@ -278,11 +299,14 @@ impl Tracker {
 
     /// Supposes an event after a checkpoint under each hypothesis that was plausible there, and
     /// reads the rows since.
-    fn replay(&mut self, place: usize, kind: Kind, log_prior: f64) {
+    fn replay(&mut self, kind: Kind, start: Start) {
         let levels = *self.learning.levels();
-        let checkpoint = &self.checkpoints[place];
+        let checkpoint = &self.checkpoints[start.place];
+        let shown_deg = checkpoint.begin.row.shown_deg(kind);
+        let held_deg = shown_deg.filter(|_| start.stands);
         let supposing = |before: &Hypothesis| {
-            let mut hypothesis = before.with_event(kind, &checkpoint.begin, log_prior);
+            let begin = &checkpoint.begin;
+            let mut hypothesis = before.with_failure(kind, begin, held_deg, start.log_prior);
             for row in self.rows.iter().skip(checkpoint.after - self.first_kept) {
                 let usual = Transition::to(row, &levels);
                 hypothesis.read(row, &levels, &usual);

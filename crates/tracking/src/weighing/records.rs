@@ -17,6 +17,8 @@ pub(super) struct Checkpoint {
     pub(super) plausible: Vec<Hypothesis>,
     pub(super) sums: EvidenceSums,
     pub(super) begin: Begin,
+    /// True if the next row came long after.
+    pub(super) before_gap: bool,
 }
 
 /// Event that was supposed once, with its log posterior ratio then.
@@ -40,9 +42,11 @@ impl Class {
     /// Returns the subject of a kind of event.
     pub(crate) fn of(kind: Kind) -> Class {
         match kind {
-            Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift => Class::Ship,
+            Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift | Kind::Deflection => {
+                Class::Ship
+            }
             Kind::Storm | Kind::Anomaly => Class::Passing,
-            Kind::StuckCard => Class::Compass,
+            Kind::FailedCard => Class::Compass,
             _ => Class::Reference,
         }
     }

@@ -53,6 +53,12 @@ impl Tracker {
         }
     }
 
+    /// Drops the least likely beyond the most that there may be, and keeps the lead.
+    pub(super) fn limit(&mut self) {
+        self.bank[1..].sort_by(|a, b| b.log_weight().total_cmp(&a.log_weight()));
+        self.bank.truncate(MOST_HYPOTHESES);
+    }
+
     /// Puts the best first, and drops those that are hopeless or the same as a better one.
     pub(super) fn prune(&mut self) {
         let lead_weight = self.bank[0].log_weight();
@@ -85,19 +91,19 @@ impl Tracker {
             if hypothesis.log_weight() < best - GIVEN_UP || kept.len() >= MOST_HYPOTHESES {
                 continue;
             }
-            let twin = kept
-                .iter()
-                .position(|other| is_same(other, &hypothesis, merges));
+            let twin = kept.iter().enumerate().find_map(|(place, other)| {
+                let same = sameness(other, &hypothesis, merges)?;
+                let adds = same == Sameness::Alike || kept[place].start != hypothesis.start;
+                Some((place, adds))
+            });
             match twin {
-                Some(twin) if merges && kept[twin].start != hypothesis.start => {
-                    merge(&mut kept[twin], &hypothesis);
-                }
-                Some(_) => {}
+                Some((twin, true)) => merge(&mut kept[twin], &hypothesis),
+                Some((_, false)) => {}
                 None => kept.push(hypothesis),
             }
         }
         self.bank = kept;
-        if self.count.is_multiple_of(ALIKE_ROWS) && merges {
+        if self.count.is_multiple_of(ALIKE_ROWS) {
             self.merge_alike();
         }
     }
@@ -121,20 +127,40 @@ fn likely(hypothesis: &Hypothesis) -> impl Iterator<Item = &Supposed> {
     hypothesis.events.iter().filter(|e| e.is_likely())
 }
 
-/// Returns true if two hypotheses suppose the same events.
-fn is_same(a: &Hypothesis, b: &Hypothesis, merges_starts: bool) -> bool {
-    a.wild == b.wild
+/// Likeness of two hypotheses that suppose the same kinds of events.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sameness {
+    /// They have the same dates.
+    Equal,
+    /// They have other dates of about the same time, and predict the same.
+    Alike,
+}
+
+/// Returns the likeness of two hypotheses; none where later rows may tell them apart.
+fn sameness(a: &Hypothesis, b: &Hypothesis, merges_starts: bool) -> Option<Sameness> {
+    let comparable = a.wild == b.wild
         && a.lively == b.lively
         && (merges_starts || a.start == b.start)
-        && likely(a).count() == likely(b).count()
-        && likely(a).zip(likely(b)).all(|(a, b)| {
-            let same_end = match (a.until, b.until) {
-                (None, None) => true,
-                (Some(a), Some(b)) => a.seconds_since(b).abs() <= SAME_S,
-                _ => false,
-            };
-            a.kind == b.kind && a.from.seconds_since(b.from).abs() <= SAME_S && same_end
-        })
+        && likely(a).count() == likely(b).count();
+    if !comparable {
+        return None;
+    }
+    let mut same = Sameness::Equal;
+    for (a, b) in likely(a).zip(likely(b)) {
+        let ends_apart_s = match (a.until, b.until) {
+            (None, None) => 0.0,
+            (Some(a), Some(b)) => a.seconds_since(b).abs(),
+            _ => return None,
+        };
+        let apart_s = a.from.seconds_since(b.from).abs().max(ends_apart_s);
+        if a.kind != b.kind || apart_s > SAME_S {
+            return None;
+        }
+        if apart_s > 0.0 {
+            same = Sameness::Alike;
+        }
+    }
+    (same == Sameness::Equal || is_alike(a, b)).then_some(same)
 }
 
 /// Returns true if two hypotheses have the same lasting events but old steps, and predict the

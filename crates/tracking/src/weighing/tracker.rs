@@ -7,7 +7,7 @@ use crate::hypotheses::hypothesis::{Begin, Hypothesis, Read};
 use crate::hypotheses::kinds::{Kind, Stay};
 use crate::hypotheses::starts::starts;
 use crate::state_space::levels::Levels;
-use crate::state_space::row::{Placed, Row, RowMaker};
+use crate::state_space::row::{PORT_GAP_S, Placed, Row, RowMaker};
 use crate::state_space::ship_state::ShipState;
 use crate::state_space::transition::Transition;
 use binnacle_analysis::fleet_prior::ShipPrior;
@@ -20,7 +20,7 @@ const KEPT_ROWS: usize = 432;
 const CHECKPOINT_ROWS: usize = 6;
 /// Rows of late after each of which there is a checkpoint.
 const RECENT_ROWS: usize = 12;
-/// Rows between looks for events, and for ends of events.
+/// Rows between looks for events, and for ends of events that do not show in one row.
 const LOOK_ROWS: usize = 2;
 const END_ROWS: usize = 6;
 /// Rows after each of which a drift may begin.
@@ -93,9 +93,7 @@ impl Tracker {
             self.learning.restart(&self.bank[0]);
         }
         self.keep_checkpoint(&row);
-        if row.after_port || self.count.is_multiple_of(END_ROWS) {
-            self.suppose_endings(&row);
-        }
+        self.suppose_endings(&row);
         if self.count.is_multiple_of(DRIFT_ROWS) {
             self.suppose_drift(&self.begin(&row));
         }
@@ -189,7 +187,7 @@ impl Tracker {
         let time = begin.time;
         if let Some(old) = self.checkpoints.len().checked_sub(RECENT_ROWS)
             && let Some(checkpoint) = self.checkpoints.get(old)
-            && !(checkpoint.begin.in_port || checkpoint.after.is_multiple_of(CHECKPOINT_ROWS))
+            && !(checkpoint.before_gap || checkpoint.after.is_multiple_of(CHECKPOINT_ROWS))
         {
             self.checkpoints.remove(old);
         }
@@ -199,6 +197,7 @@ impl Tracker {
             plausible: self.plausible(),
             sums: self.sums,
             begin,
+            before_gap: row.seconds > PORT_GAP_S,
         }));
     }
 
@@ -254,8 +253,20 @@ impl Tracker {
     }
 
     fn suppose_endings(&mut self, row: &Row) {
+        if row.after_port || self.count.is_multiple_of(END_ROWS) {
+            self.suppose_endings_of(row, END_ROWS, |kind| !kind.ends_at_once());
+        }
+        self.suppose_endings_of(row, 1, Kind::ends_at_once);
+    }
+
+    /// Supposes that events of some kinds ended within the last rows.
+    fn suppose_endings_of(&mut self, row: &Row, rows: usize, is_meant: impl Fn(Kind) -> bool) {
+        let lasts = |h: &Hypothesis| h.lasting().any(&is_meant);
+        if !self.bank.iter().any(lasts) {
+            return;
+        }
         let begin = self.begin(row);
-        let rows = END_ROWS as f64;
+        let rows = rows as f64;
         let step = Stay {
             seconds: rows * row.seconds.clamp(60.0, 3600.0),
             miles: rows * row.miles.clamp(0.2, 15.0),
@@ -264,7 +275,7 @@ impl Tracker {
         let mut ended: Vec<Hypothesis> = Vec::new();
         for hypothesis in &self.bank {
             if hypothesis.log_weight() > best - PLAUSIBLE {
-                ended.extend(hypothesis.endings(&begin, step));
+                ended.extend(hypothesis.endings(&begin, step, &is_meant));
             }
         }
         self.bank.extend(ended);

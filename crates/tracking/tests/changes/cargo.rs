@@ -153,7 +153,11 @@ fn a_strike_at_sea_does_not_end_with_the_discharge_of_cargo() {
             is_sound(&analysis);
             let found = of_the_ship(&analysis);
             assert_eq!(found.len(), 1, "seed {seed}: {found:?}");
-            assert_eq!(found[0].cause, Cause::LightningOrShock, "seed {seed}");
+            assert_eq!(
+                found[0].cause,
+                Cause::LightningOrShock,
+                "seed {seed}: {found:?}"
+            );
             let resumed = analysis.current_epoch().unwrap().resumes;
             assert_eq!(resumed, None, "seed {seed}");
         }
@@ -168,7 +172,12 @@ fn a_vessel_that_lightning_hits_with_cargo_on_board_has_a_model_of_its_present_s
     let open = LogbookEntry { to: None, ..cargo };
     let analysis = analyse_with(&log.samples[..until], &[open], &AnalysisSettings::default());
     let epoch = analysis.current_epoch().unwrap();
-    assert_eq!(epoch.begun_by_change, Some(Cause::LightningOrShock));
+    assert_eq!(
+        epoch.begun_by_change,
+        Some(Cause::LightningOrShock),
+        "{:?}",
+        analysis.changes
+    );
     assert!(epoch.model.is_some(), "{:?}", epoch.refusal);
 }
 

@@ -284,7 +284,7 @@ fn a_gyro_alone_that_is_off_for_days_costs_those_days_and_is_not_taken_for_the_s
         let reported = reported.unwrap();
         assert!(
             reported.from.seconds_since(from).abs() < HOUR_S,
-            "{reported:?}"
+            "{seed} {size_deg}: {reported:?}"
         );
         let left_out = |s: &&SampleDiagnostic| s.reason == Some(SampleReason::ReferenceFailed);
         let (during, otherwise): (Vec<_>, Vec<_>) = analysis

@@ -1,7 +1,8 @@
 //! Input of an analysis, and the hash that names it.
 
-use crate::{logbook, settings};
+use crate::{azimuths, logbook, settings};
 use anyhow::Context;
+use binnacle_compass::azimuth::Azimuth;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::ESTIMATOR;
 use binnacle_compass::sample::Sample;
@@ -21,6 +22,8 @@ pub struct Input {
     pub samples: Vec<Sample>,
     /// Entries of the logbook.
     pub logbook: Vec<LogbookEntry>,
+    /// Azimuths taken with the compass, in order of time.
+    pub azimuths: Vec<Azimuth>,
     /// Settings of the operator.
     pub settings: AnalysisSettings,
 }
@@ -29,6 +32,7 @@ pub struct Input {
 pub struct StoredInput {
     batches: Vec<(Vec<u8>,)>,
     logbook: Vec<LogbookEntry>,
+    azimuths: Vec<Azimuth>,
     settings: AnalysisSettings,
     /// Time at which the next future-dated entry takes effect.
     pub next_entry_at: Option<Timestamp>,
@@ -56,9 +60,11 @@ pub async fn load(
         .await?
         .into_iter()
         .partition(|entry| entry.from <= now);
+    let azimuths = azimuths::of_compass(db, vessel, compass, None, None).await?;
     Ok(StoredInput {
         batches,
         logbook,
+        azimuths: azimuths.into_iter().map(|stored| stored.azimuth).collect(),
         next_entry_at: ahead.iter().map(|entry| entry.from).min(),
         settings: settings::find(db, vessel).await?.analysis,
     })
@@ -75,6 +81,7 @@ impl StoredInput {
         Ok(Input {
             samples: distinct(samples)?,
             logbook: self.logbook,
+            azimuths: self.azimuths,
             settings: self.settings,
         })
     }
@@ -91,7 +98,7 @@ fn distinct(samples: Vec<Sample>) -> anyhow::Result<Vec<Sample>> {
     Ok(keyed.into_iter().map(|(_, _, sample)| sample).collect())
 }
 
-/// Returns the SHA-256 of estimator, settings, logbook and samples, as hexadecimal.
+/// Returns the SHA-256 of estimator, settings, logbook, azimuths and samples, as hexadecimal.
 ///
 /// # Errors
 /// Fails when they cannot be written as JSON.
@@ -100,6 +107,9 @@ pub fn input_hash(input: &Input) -> anyhow::Result<String> {
     hash.update(ESTIMATOR);
     update(&mut hash, &input.settings)?;
     update(&mut hash, &input.logbook)?;
+    for azimuth in &input.azimuths {
+        update(&mut hash, azimuth.form())?;
+    }
     for sample in &input.samples {
         update(&mut hash, sample)?;
     }
@@ -120,6 +130,7 @@ fn update(hash: &mut Sha256, value: &impl Serialize) -> anyhow::Result<()> {
 mod tests {
     use super::*;
     use binnacle_compass::angle::CourseOverGround;
+    use binnacle_compass::azimuth::AzimuthForm;
     use binnacle_compass::sample::SourceId;
     use std::collections::BTreeSet;
 
@@ -138,6 +149,7 @@ mod tests {
         input_hash(&Input {
             samples,
             logbook: Vec::new(),
+            azimuths: Vec::new(),
             settings,
         })
         .unwrap()
@@ -163,6 +175,34 @@ mod tests {
         let distinct: BTreeSet<&String> = hashes.iter().collect();
         assert_eq!(distinct.len(), hashes.len());
         assert!(!serde_json::to_string(&bare).unwrap().contains("roll"));
+    }
+
+    /// Returns the hash of no samples with azimuths of a quay in some true direction each.
+    fn hash_of_azimuths(quays_deg: &[f64]) -> String {
+        let azimuth = |quay_deg: &f64| -> Azimuth {
+            let form: AzimuthForm = serde_json::from_value(serde_json::json!({
+                "time": "2026-11-21T07:00:00Z", "lat": 43.0, "lon": -3.0,
+                "compass_heading_deg": 91.0, "kind": "quay", "name": "Muelle 3",
+                "true_bearing_deg": quay_deg,
+            }))
+            .unwrap();
+            Azimuth::new(form).unwrap()
+        };
+        input_hash(&Input {
+            samples: Vec::new(),
+            logbook: Vec::new(),
+            azimuths: quays_deg.iter().map(azimuth).collect(),
+            settings: AnalysisSettings::default(),
+        })
+        .unwrap()
+    }
+
+    #[test]
+    fn each_azimuth_counts_in_the_hash() {
+        let hashes = [&[][..], &[95.0], &[96.0], &[95.0, 96.0], &[95.0, 95.0]];
+        let distinct: BTreeSet<String> = hashes.map(hash_of_azimuths).into_iter().collect();
+        assert_eq!(distinct.len(), hashes.len());
+        assert_eq!(hash_of_azimuths(&[95.0]), hash_of_azimuths(&[95.0]));
     }
 
     #[test]

@@ -6,7 +6,9 @@ use super::track::track;
 use crate::event_kinds;
 use crate::models::{self, ModelJson, StoredModel};
 use binnacle_compass::coverage::Coverage;
-use binnacle_compass::result::{Analysis, Epoch, ReferenceCheck, SailNext, SampleDiagnostic};
+use binnacle_compass::result::{
+    Analysis, Epoch, PredictionCoverage, ReferenceCheck, SailNext, SampleDiagnostic,
+};
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::db::{Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
@@ -37,7 +39,7 @@ pub struct AnalysisResult {
     pub findings: Findings,
 }
 
-/// Coverage of a compass's samples, with advice and a comparison of the references.
+/// Coverage of a compass's samples, with advice, and checks of the references and of the band.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = Coverage)]
 pub struct Covered {
@@ -55,6 +57,11 @@ pub struct Covered {
     #[serde(default)]
     #[schema(required)]
     pub references: Option<ReferenceCheck>,
+    /// Predictions of readings before their use, and the share that the 95 % band held. None
+    /// before the first analysis.
+    #[serde(default)]
+    #[schema(required)]
+    pub predictions: Option<PredictionCoverage>,
 }
 
 /// Returns the hash of the input of a compass's last analysis.
@@ -85,6 +92,7 @@ pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<C
             coverage: binnacle_compass::coverage::coverage([]),
             sail_next: None,
             references: None,
+            predictions: None,
         });
     };
     Ok(serde_json::from_str(&text)?)

@@ -295,6 +295,13 @@ fn notes(model: &StoredModel, alerts: &[OpenAlert], cargo: &[MagneticCargo]) -> 
             .filter(|alert| alert.cause.effect_on_card() == CardEffect::Note)
             .map(|alert| alert.summary.clone()),
     );
+    if !model.model.0.reference_grade.is_heading() {
+        notes.push(
+            "By course over ground alone, less an estimated drift by current and wind: no gyro \
+             and no satellite compass checks this card. Compare it with azimuths."
+                .to_owned(),
+        );
+    }
     if !cargo.is_empty() {
         notes.push(
             "The logbook has magnetic cargo on board at this date: observe the deviation before \

@@ -111,6 +111,8 @@ pub(super) enum Reference {
     Satellite,
     /// Both.
     GyroAndSatellite,
+    /// The course over ground, less what current and wind are estimated to set her.
+    CourseOverGround,
     /// The sun's true azimuth.
     SunAzimuth,
     /// The sun's amplitude at the horizon.
@@ -149,7 +151,8 @@ fn of_sample(occasion: Occasion, found: &SampleDiagnostic, cards: Cards<'_>) -> 
     let reference = match (sample.gyro, sample.satellite) {
         (Some(_), Some(_)) => Reference::GyroAndSatellite,
         (Some(_), None) => Reference::Gyro,
-        (None, _) => Reference::Satellite,
+        (None, Some(_)) => Reference::Satellite,
+        (None, None) => Reference::CourseOverGround,
     };
     let time = Time(sample.time);
     let earth = found.h_nt.zip(found.z_nt);

@@ -154,6 +154,7 @@ fn by(reference: Reference) -> &'static str {
         Reference::Gyro => "gyro",
         Reference::Satellite => "satellite",
         Reference::GyroAndSatellite => "gyro, satellite",
+        Reference::CourseOverGround => "course over ground",
         Reference::SunAzimuth => "sun",
         Reference::SunAmplitude => "sun, amplitude",
         Reference::Body => "body",

@@ -8,7 +8,7 @@ mod scatter;
 pub use direction::Direction;
 pub use needle::Needle;
 pub(crate) use row::{
-    CONSTANT, LinearisationPoint, OFFSET_SD_DEG, Row, RowFrame, UNKNOWNS, USUAL_REFERENCE_SHARE,
-    Unknowns, frames, plain_residual, row, to_physical_units,
+    CONSTANT, LinearisationPoint, Row, RowFrame, UNKNOWNS, USUAL_REFERENCE_SHARE, Unknowns, frames,
+    plain_residual, row, to_physical_units,
 };
 pub use scatter::{Scatter, WhiteNoise};

@@ -55,14 +55,6 @@ pub(crate) struct FittedRow {
     pub(crate) weight: f64,
 }
 
-/// Rough estimate.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RoughEstimate {
-    pub(crate) parameters: Parameters,
-    pub(crate) constant_deg: f64,
-    pub(crate) levels: NoiseLevels,
-}
-
 /// Fits observations in any order; none when the iteration does not settle. The result
 /// depends on the order only where times are equal.
 pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> Option<Estimate> {
@@ -81,16 +73,8 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
     let problem = Problem::new(&straight, &prior)?;
     let level_sample = level_sample(&straight);
     let (solution, levels) = match &level_sample {
-        Some(level_sample) => seek(
-            &problem.by(level_sample),
-            search_start(&problem, None),
-            SearchEffort::Converged,
-        )?,
-        None => seek(
-            &problem,
-            search_start(&problem, None),
-            SearchEffort::Converged,
-        )?,
+        Some(level_sample) => seek(&problem.by(level_sample), search_start(&problem))?,
+        None => seek(&problem, search_start(&problem))?,
     };
     let (solution, mut evaluated) = problem.settle(solution, &levels, SETTLED)?;
     let mut before = solution.prior_covariance()?;
@@ -158,30 +142,6 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
     })
 }
 
-/// Returns the noise levels, and roughly the parameters at the last observation; `before`
-/// are levels close to them.
-pub(crate) fn estimate_roughly(
-    observations: &[Observation],
-    prior: &Prior,
-    before: Option<&NoiseLevels>,
-) -> Option<RoughEstimate> {
-    let sorted = Sorted::new(observations).observations;
-    let level_sample = level_sample(&sorted);
-    let problem = Problem::new(level_sample.as_deref().unwrap_or(&sorted), prior)?;
-    let (solution, levels) = seek(
-        &problem,
-        search_start(&problem, before),
-        SearchEffort::Restricted,
-    )?;
-    let (solution, drift) = problem.descend(solution, &levels, ROUGHLY_SETTLED)?;
-    let (parameters, constant_deg) = to_physical_units(&solution.at_last_row(&drift));
-    Some(RoughEstimate {
-        parameters: Parameters::from_array(parameters),
-        constant_deg,
-        levels,
-    })
-}
-
 /// Observations in order of time; where times are implausible, without times and ordered by
 /// cell.
 struct Sorted<'a> {
@@ -228,11 +188,9 @@ struct SearchStart {
     solution: Solution,
     typical: NoiseLevels,
     levels: NoiseLevels,
-    /// Effort of the first search for levels, if there is one.
-    first: Option<SearchEffort>,
 }
 
-fn search_start(problem: &Problem<'_>, before: Option<&NoiseLevels>) -> SearchStart {
+fn search_start(problem: &Problem<'_>) -> SearchStart {
     let begun = start(
         problem.observations,
         &problem.frames,
@@ -244,10 +202,6 @@ fn search_start(problem: &Problem<'_>, before: Option<&NoiseLevels>) -> SearchSt
     } else {
         NoiseLevels::MEMORYLESS
     };
-    let by_start = NoiseLevels {
-        white_deg: (NEW_SHARE * begun.sd_deg).clamp(0.02, 10.0),
-        ..typical
-    };
     SearchStart {
         solution: Solution {
             unknowns: begun.unknowns,
@@ -255,30 +209,26 @@ fn search_start(problem: &Problem<'_>, before: Option<&NoiseLevels>) -> SearchSt
             prior_information: problem.prior_information,
         },
         typical,
-        levels: before.copied().unwrap_or(by_start),
-        first: before.is_none().then_some(SearchEffort::Rough),
+        levels: NoiseLevels {
+            white_deg: (NEW_SHARE * begun.sd_deg).clamp(0.02, 10.0),
+            ..typical
+        },
     }
 }
 
-/// Returns levels, searched with the effort `last` in the end, and the parameters before
-/// that search.
-fn seek(
-    problem: &Problem<'_>,
-    begun: SearchStart,
-    last: SearchEffort,
-) -> Option<(Solution, NoiseLevels)> {
+/// Returns levels, searched roughly and then until nothing more is gained, and the parameters
+/// between.
+fn seek(problem: &Problem<'_>, begun: SearchStart) -> Option<(Solution, NoiseLevels)> {
     let SearchStart {
         mut solution,
         typical,
         mut levels,
-        first,
     } = begun;
-    if let Some(effort) = first {
-        (levels, solution.reference_share) =
-            problem.levels_at(&solution, &typical, &levels, effort);
-        (solution, _) = problem.descend(solution, &levels, ROUGHLY_SETTLED)?;
-    }
-    (levels, solution.reference_share) = problem.levels_at(&solution, &typical, &levels, last);
+    (levels, solution.reference_share) =
+        problem.levels_at(&solution, &typical, &levels, SearchEffort::Rough);
+    (solution, _) = problem.descend(solution, &levels, ROUGHLY_SETTLED)?;
+    (levels, solution.reference_share) =
+        problem.levels_at(&solution, &typical, &levels, SearchEffort::Converged);
     Some((solution, levels))
 }
 

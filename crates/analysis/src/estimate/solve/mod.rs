@@ -7,4 +7,4 @@ mod quality;
 mod start;
 
 pub(crate) use alignment::Turn;
-pub(crate) use estimator::{Options, RoughEstimate, estimate, estimate_roughly};
+pub(crate) use estimator::{Options, estimate};

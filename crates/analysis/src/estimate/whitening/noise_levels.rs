@@ -52,9 +52,7 @@ type Logs = SVector<f64, LEVELS>;
 pub(crate) enum SearchEffort {
     /// For unknowns known at their likeliest values.
     Rough,
-    /// With the unknowns' fit to the same residuals.
-    Restricted,
-    /// With the unknowns' fit, until nothing more is gained.
+    /// With the unknowns' fit to the same residuals, until nothing more is gained.
     Converged,
 }
 
@@ -130,7 +128,7 @@ impl Search<'_> {
 
     fn enough(&self) -> f64 {
         match self.effort {
-            SearchEffort::Rough | SearchEffort::Restricted => LITTLE_TO_GAIN,
+            SearchEffort::Rough => LITTLE_TO_GAIN,
             SearchEffort::Converged => NOTHING_TO_GAIN,
         }
     }

@@ -1,7 +1,7 @@
 //! Numbers of samples by the use of their course over ground, and what is said of them.
 
-use binnacle_analysis::analyse::reading::Reading;
-use binnacle_analysis::analyse::steady_course::{LEAST_SOG_KN, mark_unsteady_courses};
+use binnacle_analysis::readings::reading::Reading;
+use binnacle_analysis::readings::steady_course::{LEAST_SOG_KN, mark_unsteady_courses};
 use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::result::{FitError, SampleReason};
 

@@ -106,10 +106,21 @@ fn explanation(detected: &Detected, facts: &Facts) -> String {
              and {} a change of the vessel",
             likelier(own, of(Class::Ship))
         ),
-        Kind::StuckCard => format!(
-            "the compass stayed near {:.1} degrees while the vessel turned: a stuck compass is \
-             {against_none} a sound one",
-            detected.event.held_deg.unwrap_or(0.0)
+        Kind::FailedCard => match detected.event.held_deg {
+            Some(held_deg) => format!(
+                "the compass stayed near {held_deg:.1} degrees while the vessel turned: a stuck \
+                 compass is {against_none} a sound one"
+            ),
+            None => format!(
+                "the compass swung by itself: a failed compass is {against_none} a sound one, \
+                 and {} a passing disturbance",
+                likelier(own, of(Class::Passing))
+            ),
+        },
+        Kind::Deflection => format!(
+            "the compass was deflected as by steel or a current near it, and came back: that is \
+             {against_none} no change, and {} a passing disturbance of the earth's field",
+            likelier(own, of(Class::Passing))
         ),
         _ => format!(
             "by the magnetic compass, {} had failed: a fault of the reference is {against_none} \

@@ -1,7 +1,7 @@
 //! Size of a change: a step of magnetism and of deviation, or the error of a disturbance.
 
 use crate::state_space::ship_state::ShipState;
-use binnacle_analysis::analyse::reading::Reading;
+use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::result::Step;

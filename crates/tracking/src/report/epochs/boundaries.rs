@@ -115,13 +115,16 @@ impl<'a> Boundaries<'a> {
         true
     }
 
-    /// Merges boundaries between which there is no row. The later says what the ship is since.
+    /// Merges boundaries between which there is no row, but not those of work at different
+    /// times. The later says what the ship is since.
     fn merge(&mut self, times: &RowTimes<'_>) {
         let mut merged: Vec<Boundary<'a>> = Vec::new();
         for next in self.list.drain(..) {
             let same = merged.last_mut().filter(|last| {
                 let row = times.next(last.at.plus_seconds(-1e-6));
-                row.is_none_or(|row| row >= next.at) && (row.is_some() || last.at == next.at)
+                let are_works = last.work.is_some() && next.work.is_some();
+                row.is_none_or(|row| row >= next.at)
+                    && ((row.is_some() && !are_works) || last.at == next.at)
             });
             let Some(last) = same else {
                 merged.push(next);

@@ -2,7 +2,7 @@
 
 use super::boundaries::{Boundaries, Boundary};
 use crate::state_space::ship_state::ShipState;
-use binnacle_analysis::analyse::reading::Reading;
+use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::result::Cause;
 use binnacle_compass::time::Timestamp;

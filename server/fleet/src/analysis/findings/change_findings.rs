@@ -187,7 +187,7 @@ impl DisturbedSamples {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_analysis::analyse::analyse;
+    use binnacle_analysis::fleet_prior::ShipPrior;
     use binnacle_compass::model::{Parameters, ReferenceGrade};
     use binnacle_compass::sample::Sample;
     use binnacle_compass::settings::AnalysisSettings;
@@ -227,7 +227,13 @@ mod tests {
             sample("2026-09-20T05:00:00Z", 56.0),
             sample("2026-10-20T00:00:00Z", 0.0),
         ];
-        let analysis = analyse(&samples, &[], &AnalysisSettings::default());
+        let analysis = binnacle_tracking::analyse(&binnacle_tracking::Input {
+            samples: &samples,
+            logbook: &[],
+            azimuths: &[],
+            prior: &ShipPrior::population(),
+            settings: AnalysisSettings::default(),
+        });
         let there: Vec<EarthField> = waters_ahead(&analysis).collect();
         let met = |k: usize| analysis.samples[k].h_nt;
         let h_nt: Vec<Option<f64>> = there.iter().map(|earth| Some(earth.h_nt)).collect();
