@@ -177,6 +177,22 @@ fn a_jammed_card_that_trembles_much_is_reported_once() {
 }
 
 #[test]
+fn a_gyro_that_turns_further_and_further_is_one_fault() {
+    for seed in [61, 62, 64] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let first = log.samples.len() / 2;
+        for (i, sample) in log.samples[first..first + 60].iter_mut().enumerate() {
+            sample.gyro = sample.gyro.map(|gyro| turned(gyro, i as f64));
+        }
+        let analysis = run(&log.samples[..first + 60]);
+        let found = certain(&analysis);
+        let causes: Vec<Cause> = found.iter().map(|c| c.cause).collect();
+        assert_eq!(causes, [Cause::ReferenceFault], "seed {seed}: {found:?}");
+        assert!(of_the_ship(&analysis).is_empty(), "seed {seed}");
+    }
+}
+
+#[test]
 fn a_vessel_on_one_course_has_a_notice_that_a_change_would_not_be_noticed() {
     let log = sail_log(65, &calm(Event::Nothing));
     let course = log.samples[0].compass.degrees();

@@ -3,7 +3,7 @@
 use crate::voyages::fleet::{Event, Log, sail_log};
 use crate::{calm, certain, run};
 use binnacle_compass::angle::CompassHeading;
-use binnacle_compass::result::{Analysis, Change};
+use binnacle_compass::result::{Analysis, Cause, Change};
 use binnacle_compass::time::Timestamp;
 
 const AN_HOUR: usize = 6;
@@ -51,6 +51,41 @@ fn a_swing_in_high_latitudes_where_the_field_is_weak_is_no_strike() {
         assert!(
             reported[0].cause.is_transient(),
             "seed {seed}: {reported:?}"
+        );
+    }
+}
+
+#[test]
+fn a_compass_that_swings_for_hours_is_one_fault() {
+    for (seed, size_deg) in [(61, 20.0), (62, 30.0), (64, 40.0)] {
+        let (log, from) = with_error(seed, 12 * AN_HOUR, to_and_fro(size_deg));
+        let analysis = run(&log.samples);
+        let reported = reported(&analysis);
+        assert_eq!(reported.len(), 1, "seed {seed}: {:?}", analysis.changes);
+        assert_eq!(reported[0].cause, Cause::CompassFault, "seed {seed}");
+        let late_s = reported[0].from.seconds_since(from);
+        assert!(late_s.abs() < 3600.0, "seed {seed}: {late_s}");
+        assert!(reported[0].ended.is_some(), "seed {seed}");
+    }
+}
+
+#[test]
+fn what_is_gone_within_hours_at_sea_is_no_strike() {
+    for seed in [61, 62, 64] {
+        // Steel beside the compass, on whatever heading she is.
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let first = log.samples.len() / 2;
+        for sample in &mut log.samples[first..first + 2 * AN_HOUR] {
+            let compass_deg = sample.compass.degrees();
+            let off_deg = 4.0 + 2.0 * compass_deg.to_radians().cos();
+            sample.compass = CompassHeading::new(compass_deg + off_deg).unwrap();
+        }
+        let analysis = run(&log.samples);
+        let struck = |c: &Change| c.cause == Cause::LightningOrShock && c.ended.is_none();
+        assert!(
+            !analysis.changes.iter().any(|c| c.confirmed && struck(c)),
+            "seed {seed}: {:?}",
+            analysis.changes
         );
     }
 }

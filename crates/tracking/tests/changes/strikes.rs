@@ -54,6 +54,21 @@ fn days_after_a_strike_the_band_is_narrow_again() {
     }
 }
 
+/// On the first heading a strike shows by half; the rest of it is no second one.
+#[test]
+fn a_strike_is_one_change_through_the_first_turns() {
+    for seed in 1..13 {
+        let log = sail_log(seed, &calm(Event::Step(2500.0)));
+        let at = began(&log, Name::Step);
+        let until = log
+            .samples
+            .partition_point(|s| s.time.seconds_since(at) < 2.0 * DAY_S);
+        let analysis = run(&log.samples[..until]);
+        let found = of_the_ship(&analysis);
+        assert_eq!(found.len(), 1, "seed {seed}: {found:?}");
+    }
+}
+
 #[test]
 fn a_step_of_any_size_is_the_ships_own() {
     for (seed, off_deg) in [(61, 15.0), (62, -30.0), (63, 50.0)] {
