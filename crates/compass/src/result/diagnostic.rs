@@ -49,7 +49,7 @@ pub enum SampleReason {
     /// Gyro and satellite compass contradict each other and neither could be confirmed, or
     /// the only reference was stuck while the ship turned.
     ReferenceFailed,
-    /// The compass was stuck while the ship turned.
+    /// The compass was stuck while the ship turned, or swung by itself.
     CompassStuck,
     /// Date outside the years of the field model.
     OutsideFieldModel,

@@ -2,9 +2,9 @@
 //! compasses whose zero is off, steps, faults, and the causes given for them.
 //!
 //! `make study-ships`, or `cargo run --release -p binnacle-tracking --example
-//! real_ships_study -- --ships 6 --rows plain,retention_1`. Without `--rows` all rows are run, in the order of `--list`;
-//! each prints one line as soon as it is complete. The same seeds make the same voyages for
-//! every habit.
+//! real_ships_study -- --ships 6 --rows plain,retention_1`. Without `--rows` all rows are run,
+//! in the order of `--list`; each prints one line as soon as it is complete. The same seeds
+//! make the same voyages for every habit.
 
 #![allow(clippy::unwrap_used)] // a study, run by hand
 

@@ -91,14 +91,15 @@ impl Tracker {
             if hypothesis.log_weight() < best - GIVEN_UP || kept.len() >= MOST_HYPOTHESES {
                 continue;
             }
-            let twin = kept.iter().enumerate().find_map(|(place, other)| {
-                let same = sameness(other, &hypothesis, merges)?;
-                let adds = same == Sameness::Alike || kept[place].start != hypothesis.start;
-                Some((place, adds))
-            });
+            let twin = kept
+                .iter()
+                .position(|other| is_same(other, &hypothesis, merges));
             match twin {
-                Some((twin, true)) => merge(&mut kept[twin], &hypothesis),
-                Some((_, false)) => {}
+                Some(twin) if kept[twin].start != hypothesis.start => {
+                    merge(&mut kept[twin], &hypothesis);
+                }
+                // Supposed again, or at another time about as likely: its weight counts once.
+                Some(_) => {}
                 None => kept.push(hypothesis),
             }
         }
@@ -127,40 +128,30 @@ fn likely(hypothesis: &Hypothesis) -> impl Iterator<Item = &Supposed> {
     hypothesis.events.iter().filter(|e| e.is_likely())
 }
 
-/// Likeness of two hypotheses that suppose the same kinds of events.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sameness {
-    /// They have the same dates.
-    Equal,
-    /// They have other dates of about the same time, and predict the same.
-    Alike,
-}
-
-/// Returns the likeness of two hypotheses; none where later rows may tell them apart.
-fn sameness(a: &Hypothesis, b: &Hypothesis, merges_starts: bool) -> Option<Sameness> {
+/// Returns true if two hypotheses suppose the same events: at the same times, or at about the same
+/// where no later row can tell them apart.
+fn is_same(a: &Hypothesis, b: &Hypothesis, merges_starts: bool) -> bool {
     let comparable = a.wild == b.wild
         && a.lively == b.lively
         && (merges_starts || a.start == b.start)
         && likely(a).count() == likely(b).count();
     if !comparable {
-        return None;
+        return false;
     }
-    let mut same = Sameness::Equal;
+    let mut apart_s = 0.0_f64;
     for (a, b) in likely(a).zip(likely(b)) {
         let ends_apart_s = match (a.until, b.until) {
             (None, None) => 0.0,
             (Some(a), Some(b)) => a.seconds_since(b).abs(),
-            _ => return None,
+            _ => return false,
         };
-        let apart_s = a.from.seconds_since(b.from).abs().max(ends_apart_s);
-        if a.kind != b.kind || apart_s > SAME_S {
-            return None;
+        if a.kind != b.kind {
+            return false;
         }
-        if apart_s > 0.0 {
-            same = Sameness::Alike;
-        }
+        let begins_apart_s = a.from.seconds_since(b.from).abs();
+        apart_s = apart_s.max(begins_apart_s).max(ends_apart_s);
     }
-    (same == Sameness::Equal || is_alike(a, b)).then_some(same)
+    apart_s == 0.0 || (apart_s <= SAME_S && is_alike(a, b))
 }
 
 /// Returns true if two hypotheses have the same lasting events but old steps, and predict the

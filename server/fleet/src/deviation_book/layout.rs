@@ -154,7 +154,7 @@ fn by(reference: Reference) -> &'static str {
         Reference::Gyro => "gyro",
         Reference::Satellite => "satellite",
         Reference::GyroAndSatellite => "gyro, satellite",
-        Reference::CourseOverGround => "course over ground",
+        Reference::CourseOverGround => "course",
         Reference::SunAzimuth => "sun",
         Reference::SunAmplitude => "sun, amplitude",
         Reference::Body => "body",

@@ -118,7 +118,7 @@ fn explanation(detected: &Detected, facts: &Facts) -> String {
             ),
         },
         Kind::Deflection => format!(
-            "the compass was deflected as by steel or a current near it, and came back: that is \
+            "the compass was deflected for hours, as by steel or a current near it: that is \
              {against_none} no change, and {} a passing disturbance of the earth's field",
             likelier(own, of(Class::Passing))
         ),
