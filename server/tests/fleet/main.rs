@@ -9,6 +9,7 @@ mod azimuths;
 mod binnacles;
 mod card;
 mod changes;
+mod course_over_ground;
 mod deviation_book;
 mod enrolment;
 mod ingest;
