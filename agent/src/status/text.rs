@@ -191,12 +191,22 @@ mod tests {
     use crate::corrected_heading::CorrectedHeading;
     use crate::sampler::Exclusion;
     use crate::spool::{BudgetAccount, SpoolStatus};
+    use binnacle_compass::model::ReferenceGrade;
+    use binnacle_compass::time::Timestamp;
 
     #[test]
     fn the_text_says_what_is_wrong() {
         let status = Status {
             agent_version: "0.1.0".to_owned(),
             exclusion: Some(Exclusion::Berthed),
+            model: Some(ModelStatus {
+                version: 4,
+                data_until: Timestamp::parse("2026-11-20T00:00:00Z").unwrap(),
+                age_days: None,
+                withdrawn: None,
+                replaces: None,
+                reference_grade: ReferenceGrade::CourseOverGround,
+            }),
             clock_problem: Some("the receiver's time jumped".to_owned()),
             storage_problem: Some("samples cannot be stored".to_owned()),
             heading: CorrectedHeading {
@@ -220,6 +230,7 @@ mod tests {
         for wanted in [
             "0.1.0 not running",
             "berthed: nothing is sampled",
+            "no gyro or satellite compass checks it",
             "CLOCK      the receiver's time jumped\n",
             "STORAGE    samples cannot be stored\n",
             "not corrected: there is no model yet",
