@@ -30,6 +30,6 @@ mod whitening;
 pub use noise_process::{COMPASS_SWING_S, SATELLITE_S, SLOW_GYRO_S, VARIATION_NM, swing_over};
 pub(crate) use noise_process::{SCHULER_DAMPING, SCHULER_PER_S};
 pub use prior::{POPULATION_SD, Prior};
-pub use robust_loss::{FULL_WEIGHT_SD, weight};
+pub use robust_loss::{heavy_tailed_loss, weight};
 pub use rows::{Direction, Needle, Scatter, WhiteNoise};
 pub(crate) use solve::{Options, Turn, estimate};

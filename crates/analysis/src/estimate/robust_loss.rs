@@ -2,7 +2,7 @@
 
 /// Innovation from which its weight falls, standard deviations: Gaussian noise loses next
 /// to nothing.
-pub const FULL_WEIGHT_SD: f64 = 2.5;
+const FULL_WEIGHT_SD: f64 = 2.5;
 
 /// Innovation from which it is no noise that the levels describe, standard deviations.
 const GROSS_ERROR_SD: f64 = 6.0;
@@ -26,16 +26,21 @@ pub(crate) fn batch_weight(z_squared: f64) -> f64 {
     weight(z_squared) * (GROSS_ERROR_SD * GROSS_ERROR_SD / z_squared).min(1.0)
 }
 
-/// Returns the loss whose slope is twice the weighted innovation, up to its value at
-/// `GROSS_ERROR_SD`: the levels describe the other rows, however wild a few are.
-pub(crate) fn robust_loss(z_squared: f64) -> f64 {
-    let square = z_squared.min(GROSS_ERROR_SD * GROSS_ERROR_SD);
+/// Returns the loss whose slope is twice the weighted innovation, from its square in standard
+/// deviations.
+pub fn heavy_tailed_loss(z_squared: f64) -> f64 {
     let bound = FULL_WEIGHT_SD * FULL_WEIGHT_SD;
-    if square <= bound {
-        square
+    if z_squared <= bound {
+        z_squared
     } else {
-        bound * (1.0 + (square / bound).ln())
+        bound * (1.0 + (z_squared / bound).ln())
     }
+}
+
+/// Returns the same loss up to its value at `GROSS_ERROR_SD`: the levels describe the other rows,
+/// however wild a few are.
+pub(crate) fn robust_loss(z_squared: f64) -> f64 {
+    heavy_tailed_loss(z_squared.min(GROSS_ERROR_SD * GROSS_ERROR_SD))
 }
 
 /// Returns the slope of [`robust_loss`].

@@ -3,7 +3,7 @@
 use super::scalar::Scalar;
 use super::states::{STATES, dot};
 use super::transition::{Gain, Pair, Transition};
-use binnacle_analysis::estimate::{FULL_WEIGHT_SD, weight};
+use binnacle_analysis::estimate::{heavy_tailed_loss, weight};
 
 /// Mean and covariance of the states, and the log likelihood of what was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,16 +24,9 @@ pub(crate) struct Innovation {
 }
 
 impl Innovation {
-    /// Returns the loss of a reading with tails as heavy as instruments have: its slope is twice
-    /// the weighted innovation.
+    /// Returns the loss of a reading with tails as heavy as instruments have.
     pub(crate) fn loss(self) -> f64 {
-        let bound = FULL_WEIGHT_SD * FULL_WEIGHT_SD;
-        let square = self.z_squared();
-        if square <= bound {
-            square
-        } else {
-            bound * (1.0 + (square / bound).ln())
-        }
+        heavy_tailed_loss(self.z_squared())
     }
 
     /// Returns the square in standard deviations.
