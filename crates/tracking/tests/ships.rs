@@ -129,6 +129,31 @@ fn the_band_of_a_ship_that_changes_at_each_call_is_wider_than_a_plain_ships() {
 }
 
 #[test]
+fn what_each_call_does_to_a_ship_is_a_habit_and_no_change() {
+    let habits: [(u64, Variety, fn(&mut Plan)); 3] = [
+        (1_000_001, Variety::Poor, |plan| {
+            plan.habits.load_step_nt = 300.0;
+            plan.faults.satellite = false;
+        }),
+        (1_000_003, Variety::Rich, |plan| {
+            plan.habits.retentive_share = 0.02
+        }),
+        (1_000_006, Variety::Rich, |plan| {
+            plan.habits.retentive_share = 0.02
+        }),
+    ];
+    for (seed, variety, habit) in habits {
+        let mut plan = Plan::new(Event::Nothing, variety);
+        plan.days = 100.0;
+        plan.gyro_faults = 0.0;
+        habit(&mut plan);
+        let analysis = run(&sail_log(seed, &plan).samples);
+        let changes = ship_changes(&analysis);
+        assert!(changes.is_empty(), "{seed}: {changes:?}");
+    }
+}
+
+#[test]
 fn a_gyro_that_steps_is_named_and_the_ship_is_not() {
     let log = sail(3, Event::GyroFault(4.0), 30.0);
     let analysis = run(&log.samples);

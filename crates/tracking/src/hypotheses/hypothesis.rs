@@ -57,16 +57,18 @@ pub(crate) struct Event {
     pub(crate) in_port: bool,
     /// Heading at which a failed instrument stands, degrees; none of one that shows any.
     pub(crate) held_deg: Option<f64>,
-    /// Distance sailed before it, nautical miles.
+    /// Distance sailed before it, nautical miles, and port calls until it began.
     pub(crate) from_nm: f64,
+    pub(crate) from_call: u32,
 }
 
 impl Event {
-    /// Returns the time and distance from its beginning to a row.
+    /// Returns the stay from its beginning to a row.
     fn stay_until(&self, row: &Row) -> Stay {
         Stay {
             seconds: row.time.seconds_since(self.from),
             miles: row.sailed_nm - self.from_nm,
+            calls: row.calls.saturating_sub(self.from_call),
         }
     }
 }
@@ -343,6 +345,7 @@ impl Hypothesis {
             let before = Stay {
                 seconds: after.seconds - row.seconds,
                 miles: after.miles - row.miles,
+                calls: after.calls.saturating_sub(u32::from(row.after_port)),
             };
             event.kind.row().ending.log_survival(before, after)
         });
@@ -391,6 +394,7 @@ impl Hypothesis {
             in_port: begin.in_port,
             held_deg,
             from_nm: begin.row.sailed_nm,
+            from_call: begin.row.calls + u32::from(begin.in_port),
         };
         next.events.push(Supposed {
             event: Arc::new(event),
@@ -428,10 +432,13 @@ impl Hypothesis {
         let lasting = self.events.iter().enumerate();
         let lasting = lasting.filter(|(_, e)| e.until.is_none() && is_meant(e.kind));
         let ended = lasting.filter_map(|(i, event)| {
+            let stay = event.stay_until(&begin.row);
             let probability = match event.kind.row().ending {
-                Ending::InPort(share) if begin.in_port => share * event.probability,
+                ending @ Ending::InPort(_) if begin.in_port => {
+                    event.probability * ending.probability_at_call(stay.calls + 1)
+                }
                 Ending::Never | Ending::InPort(_) => return None,
-                ending => ending.probability(event.stay_until(&begin.row), step),
+                ending => ending.probability(stay, step),
             };
             (probability > 0.0).then(|| self.with_end(i, begin, probability.ln()))
         });

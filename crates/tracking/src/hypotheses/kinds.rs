@@ -55,9 +55,13 @@ pub(crate) enum Ending {
     After(f64),
     /// After some distance, nautical miles in the mean; what it moved returns.
     AfterMiles(f64),
-    /// At a port call, with this probability; what it moved returns.
+    /// At a port call, with this probability at the first; what it moved returns.
     InPort(f64),
 }
+
+/// Probability of an end at a port call over that at the call before: what was not discharged
+/// at the first calls may be there to stay.
+const LATER_CALL: f64 = 0.7;
 
 impl Ending {
     /// Returns the logarithm of the probability that an event lasts for longer than a stay, and
@@ -81,7 +85,17 @@ impl Ending {
     /// until some later stay.
     pub(crate) fn log_survival(self, before: Stay, after: Stay) -> f64 {
         let at = |stay| self.duration(stay).map_or(0.0, |s| s.log_probability);
-        at(after) - at(before)
+        let calls = (before.calls + 1)..=after.calls;
+        let stays = calls.map(|call| (1.0 - self.probability_at_call(call)).ln());
+        at(after) - at(before) + stays.sum::<f64>()
+    }
+
+    /// Returns the probability that an event ends at a port call, counted from its beginning.
+    pub(crate) fn probability_at_call(self, call: u32) -> f64 {
+        match self {
+            Ending::InPort(first) => first * LATER_CALL.powi(call.cast_signed() - 1),
+            _ => 0.0,
+        }
     }
 
     /// Returns the probability that an event which has lasted so long ended within the step
@@ -96,11 +110,12 @@ impl Ending {
     }
 }
 
-/// Time and distance since an event began.
+/// Time, distance and port calls since an event began.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stay {
     pub(crate) seconds: f64,
     pub(crate) miles: f64,
+    pub(crate) calls: u32,
 }
 
 /// Share of events that last for longer, and the rate at which they end.

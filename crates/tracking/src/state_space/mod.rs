@@ -2,6 +2,7 @@
 
 pub(crate) mod filter;
 pub(crate) mod levels;
+pub(crate) mod retained;
 pub(crate) mod row;
 pub(crate) mod scalar;
 pub(crate) mod ship_state;

@@ -48,6 +48,8 @@ pub(crate) struct Row {
     pub(crate) new_satellite: bool,
     /// True if the ship was in port since the row before.
     pub(crate) after_port: bool,
+    /// Port calls until then.
+    pub(crate) calls: u32,
     pub(crate) compass_deg: f64,
     /// Heading by gyro and by satellite compass, less the charted variation.
     pub(crate) gyro_deg: Option<f64>,
@@ -63,6 +65,8 @@ pub(crate) struct Row {
     pub(crate) daily: [f64; 2],
     /// Lagged horizontal field in ship axes for each memory, nT.
     pub(crate) lagged_nt: [[f64; 2]; 2],
+    /// Horizontal field at the last berth that is left in each memory, nT.
+    pub(crate) berth_nt: [f64; 2],
     pub(crate) roll_rad: Option<f64>,
     pub(crate) rate_of_turn_deg_min: f64,
     pub(crate) white: WhiteNoise,
@@ -115,9 +119,12 @@ pub(crate) struct RowMaker {
     last: Option<Last>,
     /// Distance since the first row, nautical miles.
     sailed_nm: f64,
+    /// Port calls since the first row.
+    calls: u32,
     run: Option<Run>,
     /// Horizontal field in ship axes with each memory, nT.
     lagged_nt: [[f64; 2]; 2],
+    berth_nt: [f64; 2],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -146,8 +153,10 @@ impl RowMaker {
             sources: [None; 2],
             last: None,
             sailed_nm: 0.0,
+            calls: 0,
             run: None,
             lagged_nt: [[0.0; 2]; 2],
+            berth_nt: [0.0; 2],
         }
     }
 
@@ -173,9 +182,19 @@ impl RowMaker {
         let sailed_nm = last.map_or(0.0, |last| miles(last.position, sample.position));
         self.sailed_nm += sailed_nm;
         let seconds = last.map_or(0.0, |last| sample.time.seconds_since(last.time));
+        let after_port = last.is_some_and(|last| {
+            let speed_kn = last.sog_kn.or(sample.sog_kn).unwrap_or(USUAL_KN);
+            let sailing_s = 3600.0 * sailed_nm / speed_kn.max(1.0);
+            seconds - sailing_s > PORT_GAP_S
+        });
+        self.calls += u32::from(after_port);
         let [forward, starboard, _] = earth.in_ship_axes(heading_deg.to_radians());
         let field_nt = [forward, starboard];
-        self.lag(last, seconds, field_nt);
+        if after_port {
+            self.lie_in_port(seconds, earth.h_nt);
+        } else {
+            self.lag(last, seconds, field_nt);
+        }
         self.last = Some(Last {
             time: sample.time,
             position: sample.position,
@@ -197,11 +216,8 @@ impl RowMaker {
             turned_deg: last.map_or(0.0, |last| wrap_180(heading_deg - last.heading_deg)),
             new_gyro,
             new_satellite,
-            after_port: last.is_some_and(|last| {
-                let speed_kn = last.sog_kn.or(sample.sog_kn).unwrap_or(USUAL_KN);
-                let sailing_s = 3600.0 * sailed_nm / speed_kn.max(1.0);
-                seconds - sailing_s > PORT_GAP_S
-            }),
+            after_port,
+            calls: self.calls,
             compass_deg: sample.compass.degrees(),
             gyro_deg,
             satellite_deg,
@@ -215,6 +231,7 @@ impl RowMaker {
             ),
             daily: [sin, cos],
             lagged_nt: self.lagged_nt,
+            berth_nt: self.berth_nt,
             roll_rad: sample.roll_deg.map(f64::to_radians),
             rate_of_turn_deg_min: sample.rate_of_turn_deg_min.unwrap_or(0.0),
             white,
@@ -269,12 +286,24 @@ impl RowMaker {
     /// Lets the retained field follow the induced one, on the mean of both headings.
     fn lag(&mut self, last: Option<Last>, seconds: f64, field_nt: [f64; 2]) {
         let before = last.map_or(field_nt, |last| last.field_nt);
-        for (lagged, memory_s) in self.lagged_nt.iter_mut().zip(RETENTION_S) {
+        let memories = self.lagged_nt.iter_mut().zip(&mut self.berth_nt);
+        for ((lagged, of_berth), memory_s) in memories.zip(RETENTION_S) {
             let keep = (-seconds / memory_s).exp();
+            *of_berth *= keep;
             for axis in 0..2 {
                 let mean = f64::midpoint(before[axis], field_nt[axis]);
                 lagged[axis] = mean + (lagged[axis] - mean) * keep;
             }
+        }
+    }
+
+    /// Lets the retained field follow that of a berth on some heading.
+    fn lie_in_port(&mut self, seconds: f64, h_nt: f64) {
+        let memories = self.lagged_nt.iter_mut().zip(&mut self.berth_nt);
+        for ((lagged, of_berth), memory_s) in memories.zip(RETENTION_S) {
+            let keep = (-seconds / memory_s).exp();
+            *lagged = lagged.map(|field_nt| keep * field_nt);
+            *of_berth = (1.0 - keep) * h_nt;
         }
     }
 }

@@ -1,11 +1,12 @@
 //! A row's readings as scalars in the filter's states, for one hypothesis.
 
 use super::levels::{Level, Levels};
+use super::retained::Retained;
 use super::row::{Course, Row};
 use super::states::{
-    ALIGNMENT, ANOMALY, BX, BY, CRAB, CURRENT, DAILY, FRICTION, GYRO, GYRO_HEADING, GYRO_SLOW,
-    HEEL, HEEL_NT_PER_RAD, LAG, LEEWAY, LIST, LIST_NT, REFLECTION, RETENTION, SATELLITE, SCHULER,
-    SETTLING, SPEED, STATES, STEADY, SWING, USUAL_H_NT, VARIATION, dot, parameters,
+    ALIGNMENT, ANOMALY, BERTH, BX, BY, CRAB, CURRENT, DAILY, FRICTION, GYRO, GYRO_HEADING,
+    GYRO_SLOW, HEEL, HEEL_NT_PER_RAD, LAG, LEEWAY, LIST, LIST_NT, REFLECTION, RETENTION, SATELLITE,
+    SCHULER, SETTLING, SPEED, STATES, STEADY, SWING, USUAL_H_NT, VARIATION, dot, parameters,
 };
 use binnacle_analysis::estimate::{Direction, Needle, POPULATION_SD};
 use binnacle_compass::angle::wrap_180;
@@ -224,10 +225,10 @@ fn deviation_by_course(row: &Row, mean: &[f64; STATES], course: &Course, varianc
         - Drift::new(true_deg, course.sog_kn, mean).angle_deg;
     let (true_deg, needle) = needle_at(course.run_deg);
     let drift = Drift::new(true_deg, course.sog_kn, mean);
-    Ship::load(row, &needle, &mut load);
+    ship.load(row, &needle, &mut load);
     // The heading by the compass turns the needle and the drift angle, too.
     let moves = (2.0 - needle.compass_per_magnetic()) * (1.0 + drift.by_heading);
-    for state in (0..=HEEL).chain([LIST, ALIGNMENT, SWING, FRICTION]) {
+    for state in (0..=HEEL).chain([LIST, ALIGNMENT, SWING, FRICTION, BERTH, BERTH + 1]) {
         load[state] *= moves;
     }
     drift.load(&mut load);
@@ -306,7 +307,7 @@ fn deviation_by(row: &Row, mean: &[f64; STATES], reference: &Reference, variance
     let fused_deg = magnetic_deg - (1.0 - REFERENCE_SHARE) * rough;
     let needle = ship.needle(fused_deg, row);
     let innovation = innovation_at(&needle) / per_compass(&needle);
-    Ship::load(row, &needle, &mut load);
+    ship.load(row, &needle, &mut load);
     Scalar {
         innovation,
         load,
@@ -326,18 +327,21 @@ fn per_compass(needle: &Needle) -> f64 {
 /// Ship's magnetism with the fields of a row's circumstances in it.
 struct Ship {
     parameters: Parameters,
+    retained: Retained,
 }
 
 impl Ship {
     fn new(row: &Row, mean: &[f64; STATES]) -> Ship {
         let mut parameters = parameters(mean);
-        for (share, lagged) in mean[RETENTION..].iter().zip(row.lagged_nt) {
-            parameters.bx_nt += share / 100.0 * lagged[0];
-            parameters.by_nt += share / 100.0 * lagged[1];
-        }
+        let retained = Retained::new(row, mean);
+        parameters.bx_nt += retained.field_nt[0];
+        parameters.by_nt += retained.field_nt[1];
         parameters.by_nt += mean[LIST] * LIST_NT;
         parameters.by_nt += mean[HEEL] * HEEL_NT_PER_RAD * row.roll_rad.unwrap_or(0.0);
-        Ship { parameters }
+        Ship {
+            parameters,
+            retained,
+        }
     }
 
     fn needle(&self, magnetic_deg: f64, row: &Row) -> Needle {
@@ -349,15 +353,17 @@ impl Ship {
     }
 
     /// Adds the slopes by the ship's states, in degrees.
-    fn load(row: &Row, needle: &Needle, load: &mut [f64; STATES]) {
+    fn load(&self, row: &Row, needle: &Needle, load: &mut [f64; STATES]) {
         let slope = needle.gradient().map(f64::to_degrees);
         for j in 0..PARAMETERS {
             load[j] = slope[j] * POPULATION_SD[j];
         }
         let [sx, sy] = [slope[BX], slope[BY]];
-        for (load, lagged) in load[RETENTION..].iter_mut().zip(row.lagged_nt) {
-            *load = (sx * lagged[0] + sy * lagged[1]) / 100.0;
+        for (load, by_share) in load[RETENTION..].iter_mut().zip(self.retained.by_share) {
+            *load = sx * by_share[0] + sy * by_share[1];
         }
+        load[BERTH] = sx * self.retained.by_berth;
+        load[BERTH + 1] = sy * self.retained.by_berth;
         load[LIST] = sy * LIST_NT;
         load[HEEL] = sy * HEEL_NT_PER_RAD * row.roll_rad.unwrap_or(0.0);
     }

@@ -1,8 +1,11 @@
 //! The ship's magnetism and the compass's alignment at a time, as a model.
 
 use super::filter::Filter;
+use super::retained::Retained;
 use super::row::Row;
-use super::states::{ALIGNMENT, BX, BY, HEEL, HEEL_NT_PER_RAD, LIST, LIST_NT, RETENTION, STATES};
+use super::states::{
+    ALIGNMENT, BERTH, BX, BY, HEEL, HEEL_NT_PER_RAD, LIST, LIST_NT, RETENTION, STATES,
+};
 use binnacle_analysis::estimate::POPULATION_SD;
 use binnacle_compass::model::{Covariance, Parameters};
 use binnacle_compass::ship::PARAMETERS;
@@ -23,11 +26,15 @@ impl ShipState {
     /// Takes the ship from a filter, in the circumstances of a row: what the hull retains, and
     /// its list.
     pub(crate) fn from_filter(filter: &Filter, row: &Row) -> ShipState {
-        let map = map(row);
+        let retained = Retained::new(row, &filter.mean);
+        let map = map(row, &retained);
         let apply = |vector: &[f64; STATES]| -> [f64; VALUES] {
             std::array::from_fn(|i| map[i].iter().zip(vector).map(|(m, x)| m * x).sum())
         };
-        let mean = apply(&filter.mean);
+        let mut mean = apply(&filter.mean);
+        // What the berth left is a product of two states: both slopes count it.
+        mean[BX] -= retained.by_berth * filter.mean[BERTH];
+        mean[BY] -= retained.by_berth * filter.mean[BERTH + 1];
         let rows = map.map(|row| filter.spread(&row));
         let covariance = rows.map(|row| apply(&row));
         ShipState { mean, covariance }
@@ -105,16 +112,18 @@ fn sandwich(slopes: &Covariance, covariance: &Covariance) -> Covariance {
     std::array::from_fn(|i| std::array::from_fn(|j| f64::midpoint(whole[i][j], whole[j][i])))
 }
 
-/// Returns the values as linear functions of the filter's states.
-fn map(row: &Row) -> [[f64; STATES]; VALUES] {
+/// Returns the slopes of the values by the filter's states.
+fn map(row: &Row, retained: &Retained) -> [[f64; STATES]; VALUES] {
     let mut map = [[0.0; STATES]; VALUES];
     for j in 0..PARAMETERS {
         map[j][j] = POPULATION_SD[j];
     }
-    for (memory, lagged) in row.lagged_nt.iter().enumerate() {
-        map[BX][RETENTION + memory] = lagged[0] / 100.0;
-        map[BY][RETENTION + memory] = lagged[1] / 100.0;
+    for (memory, by_share) in retained.by_share.iter().enumerate() {
+        map[BX][RETENTION + memory] = by_share[0];
+        map[BY][RETENTION + memory] = by_share[1];
     }
+    map[BX][BERTH] = retained.by_berth;
+    map[BY][BERTH + 1] = retained.by_berth;
     map[BY][LIST] = LIST_NT;
     map[BY][HEEL] = HEEL_NT_PER_RAD * row.roll_rad.unwrap_or(0.0);
     map[PARAMETERS][ALIGNMENT] = 1.0;

@@ -12,7 +12,7 @@ use binnacle_compass::model::Parameters;
 use binnacle_compass::ship::PARAMETERS;
 
 /// Number of states.
-pub(crate) const STATES: usize = 32;
+pub(crate) const STATES: usize = 34;
 
 /// Fore-and-aft permanent field; the other six parameters follow in the order of
 /// [`Parameters`].
@@ -60,6 +60,10 @@ pub(crate) const ANOMALY: usize = 28;
 
 /// Growth of the permanent field fore and aft a day; athwartships follows.
 pub(crate) const GROWTH: usize = 30;
+
+/// Direction of the induced field at the last berth, in ship axes and over H: nobody reads the
+/// heading there.
+pub(crate) const BERTH: usize = 32;
 
 /// Constant drift angle of a ship without heading reference, degrees: propeller, rudder, trim.
 pub(crate) const CRAB: usize = REFERENCE;

@@ -3,8 +3,8 @@
 use super::levels::{Level, Levels};
 use super::row::Row;
 use super::states::{
-    ANOMALY, BX, BY, CURRENT, FRICTION, GROWTH, GYRO, GYRO_SLOW, LEEWAY, LIST, LIST_NT, REFLECTION,
-    SATELLITE, SCHULER, SETTLING, STATES, STEADY, SWING, VARIATION,
+    ANOMALY, BERTH, BX, BY, CURRENT, FRICTION, GROWTH, GYRO, GYRO_SLOW, LEEWAY, LIST, LIST_NT,
+    REFLECTION, SATELLITE, SCHULER, SETTLING, STATES, STEADY, SWING, VARIATION,
 };
 use binnacle_analysis::estimate::{
     COMPASS_SWING_S, POPULATION_SD, SATELLITE_S, SLOW_GYRO_S, VARIATION_NM, swing_over,
@@ -125,6 +125,9 @@ impl Transition {
         t.fade(FRICTION, friction, levels.at(Level::Friction));
         t.drift(levels.at(Level::Drift).powi(2) * seconds / DRIFT_S);
         if row.after_port {
+            // On any heading alike.
+            t.fade(BERTH, f64::INFINITY, 0.5_f64.sqrt());
+            t.fade(BERTH + 1, f64::INFINITY, 0.5_f64.sqrt());
             t.step(levels.at(Level::PortStep).powi(2), 1.0);
         }
         t

@@ -1,6 +1,7 @@
 //! Learning of a ship's levels by the slope of the likelihood.
 
 use crate::hypotheses::hypothesis::Hypothesis;
+use crate::state_space::filter::Filter;
 use crate::state_space::levels::{LEVELS, Level, Levels};
 use crate::state_space::row::Row;
 use crate::state_space::transition::Transition;
@@ -10,8 +11,10 @@ use binnacle_compass::azimuth::Azimuth;
 const NUDGE: f64 = 0.05;
 /// Greatest knowledge of a level's logarithm, one over its variance: habits change.
 const MOST_KNOWN: f64 = 400.0;
-/// Greatest step of a level's logarithm at one row.
+/// Greatest step of a level's logarithm for one row.
 const LARGEST_STEP: f64 = 0.05;
+/// Most that one row teaches: as much as two readings of the level itself.
+const MOST_TAUGHT: f64 = 4.0;
 
 /// Rows of a turn, and the number of turns among which the brief levels are shared once a ship
 /// is known.
@@ -25,8 +28,18 @@ pub(crate) struct Learning {
     log_factors: [f64; LEVELS],
     information: [f64; LEVELS],
     nudged: Vec<Hypothesis>,
+    /// What rows said of each level that is not decided yet: another hypothesis may be right.
+    pending: [Pending; LEVELS],
     levels: Levels,
     rows: usize,
+}
+
+/// Slopes of the likelihood by a level's logarithm over some rows.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pending {
+    slope: f64,
+    information: f64,
+    rows: f64,
 }
 
 impl Learning {
@@ -35,6 +48,7 @@ impl Learning {
             log_factors: [0.0; LEVELS],
             information: Level::ALL.map(|level| level.prior().spread.powi(-2)),
             nudged: Vec::new(),
+            pending: [Pending::default(); LEVELS],
             levels: Levels::usual(),
             rows: 0,
         }
@@ -47,6 +61,18 @@ impl Learning {
     /// Begins anew from another filter.
     pub(crate) fn restart(&mut self, lead: &Hypothesis) {
         self.nudged = vec![lead.clone(); LEVELS];
+        self.pending = [Pending::default(); LEVELS];
+    }
+
+    /// Mixes another filter into those beside the lead, as it was mixed into the lead.
+    pub(crate) fn mix_with(&mut self, other: &Filter, share: f64) {
+        for hypothesis in &mut self.nudged {
+            let log_likelihood = hypothesis.filter.log_likelihood;
+            hypothesis.filter = Filter {
+                log_likelihood,
+                ..hypothesis.filter.mixed_with(other, share)
+            };
+        }
     }
 
     /// Returns true if a level is looked at in this row: after a month the brief ones take turns.
@@ -74,9 +100,10 @@ impl Learning {
         }
     }
 
-    /// Reads the row by which the lead gained some log likelihood.
-    pub(crate) fn read(&mut self, row: &Row, usual: &Transition, gained: f64, learns: bool) {
-        let mut factors = self.log_factors;
+    /// Reads the row by which the lead gained some log likelihood. Rows count once it is certain
+    /// that the lead is right about them: were those left out in which it is not, large habits
+    /// would be taken for small ones.
+    pub(crate) fn read(&mut self, row: &Row, usual: &Transition, gained: f64, is_certain: bool) {
         for (i, level) in Level::ALL.into_iter().enumerate() {
             if level.is_silent(row) || !self.is_on(i, level) {
                 continue;
@@ -87,18 +114,32 @@ impl Learning {
             let transition = usual.with_scaled(level, NUDGE.exp(), row, &self.levels);
             hypothesis.read(row, &levels, &transition);
             let slope = (hypothesis.filter.log_likelihood - before - gained) / NUDGE;
-            if !learns || !slope.is_finite() {
-                continue;
+            if slope.is_finite() {
+                let pending = &mut self.pending[i];
+                pending.slope += slope;
+                pending.information += (slope * slope).min(MOST_TAUGHT);
+                pending.rows += 1.0;
             }
-            self.information[i] = (self.information[i] + slope * slope).min(MOST_KNOWN);
-            let step = slope / self.information[i];
-            factors[i] += step.clamp(-LARGEST_STEP, LARGEST_STEP);
         }
         self.rows += 1;
-        self.log_factors = factors;
+        if is_certain {
+            self.learn();
+        }
+    }
+
+    /// Moves the levels by what is pending.
+    fn learn(&mut self) {
         let mut levels = Levels::usual();
-        for (level, factor) in Level::ALL.into_iter().zip(factors) {
-            levels = levels.scaled(level, factor.exp());
+        for (i, level) in Level::ALL.into_iter().enumerate() {
+            let pending = std::mem::take(&mut self.pending[i]);
+            if pending.rows > 0.0 {
+                let known = self.information[i] + pending.information;
+                self.information[i] = known.min(MOST_KNOWN);
+                let largest = LARGEST_STEP * pending.rows;
+                let step = pending.slope / self.information[i];
+                self.log_factors[i] += step.clamp(-largest, largest);
+            }
+            levels = levels.scaled(level, self.log_factors[i].exp());
         }
         self.levels = levels;
     }

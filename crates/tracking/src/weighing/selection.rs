@@ -96,7 +96,7 @@ impl Tracker {
                 .position(|other| is_same(other, &hypothesis, merges));
             match twin {
                 Some(twin) if kept[twin].start != hypothesis.start => {
-                    merge(&mut kept[twin], &hypothesis);
+                    self.merge(&mut kept, twin, &hypothesis);
                 }
                 // Supposed again, or at another time about as likely: its weight counts once.
                 Some(_) => {}
@@ -115,11 +115,19 @@ impl Tracker {
         for hypothesis in std::mem::take(&mut self.bank) {
             let alike = kept.iter().position(|other| is_alike(other, &hypothesis));
             match alike {
-                Some(alike) => merge(&mut kept[alike], &hypothesis),
+                Some(alike) => self.merge(&mut kept, alike, &hypothesis),
                 None => kept.push(hypothesis),
             }
         }
         self.bank = kept;
+    }
+
+    /// Merges a hypothesis into one that is kept. What is learnt beside the lead follows it.
+    fn merge(&mut self, kept: &mut [Hypothesis], into: usize, other: &Hypothesis) {
+        let share = merge(&mut kept[into], other);
+        if into == 0 {
+            self.learning.mix_with(&other.filter, share);
+        }
     }
 }
 
@@ -179,8 +187,8 @@ fn is_alike(a: &Hypothesis, b: &Hypothesis) -> bool {
         })
 }
 
-/// Merges a hypothesis into another by moments.
-fn merge(into: &mut Hypothesis, other: &Hypothesis) {
+/// Merges a hypothesis into another by moments. Returns its share.
+fn merge(into: &mut Hypothesis, other: &Hypothesis) -> f64 {
     let (a, b) = (into.log_weight(), other.log_weight());
     let share = 1.0 / (1.0 + (a - b).exp());
     mix_events(&mut into.events, &other.events, share);
@@ -192,6 +200,7 @@ fn merge(into: &mut Hypothesis, other: &Hypothesis) {
         log_likelihood,
         ..filter
     };
+    share
 }
 
 /// Mixes another hypothesis's events into some, `share` being the other's: each event keeps its

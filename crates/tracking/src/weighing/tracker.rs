@@ -233,8 +233,8 @@ impl Tracker {
         }
         self.bank.extend(wild);
         let (read, gained) = leads.expect("the bank is never empty");
-        let learns = self.is_settled();
-        self.learning.read(row, &usual, gained, learns);
+        let is_certain = self.is_settled();
+        self.learning.read(row, &usual, gained, is_certain);
         self.sums.add(row, &read);
         Tracked {
             read,
@@ -270,6 +270,7 @@ impl Tracker {
         let step = Stay {
             seconds: rows * row.seconds.clamp(60.0, 3600.0),
             miles: rows * row.miles.clamp(0.2, 15.0),
+            calls: 0,
         };
         let best = self.best();
         let mut ended: Vec<Hypothesis> = Vec::new();
