@@ -415,7 +415,7 @@ impl Hypothesis {
             }
         } else {
             let states: Vec<usize> = (0..PARAMETERS).collect();
-            let anew = Filter::new([0.0; STATES], &[1.0; STATES]);
+            let anew = Filter::new(&[0.0; STATES], &[1.0; STATES]);
             self.filter.restore(&Marginal::from_filter(&anew, &states));
             self.filter.covariance[ALIGNMENT][ALIGNMENT] += REALIGNED_DEG * REALIGNED_DEG;
         }

@@ -93,7 +93,7 @@ pub(crate) fn starts(
 
 /// Returns a filter before the first row, its ship drawn from a component of the prior.
 fn of_component(component: &PriorComponent, size: f64, plain: &[f64; STATES]) -> Filter {
-    let mut filter = Filter::new([0.0; STATES], plain);
+    let mut filter = Filter::new(&[0.0; STATES], plain);
     let rows = component.covariance.iter().zip(POPULATION_SD).enumerate();
     for (i, (row, sd)) in rows {
         filter.mean[i] = component.mean[i] / sd;

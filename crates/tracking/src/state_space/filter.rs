@@ -37,13 +37,13 @@ impl Innovation {
 
 impl Filter {
     /// Makes a filter of independent states from means and standard deviations.
-    pub(crate) fn new(mean: [f64; STATES], sd: &[f64; STATES]) -> Filter {
+    pub(crate) fn new(mean: &[f64; STATES], sd: &[f64; STATES]) -> Filter {
         let mut covariance = Box::new([[0.0; STATES]; STATES]);
         for (i, sd) in sd.iter().enumerate() {
             covariance[i][i] = sd * sd;
         }
         Filter {
-            mean,
+            mean: *mean,
             covariance,
             log_likelihood: 0.0,
         }
