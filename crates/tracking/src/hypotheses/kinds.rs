@@ -27,6 +27,8 @@ pub(crate) enum Kind {
     GyroRamp,
     /// Magnetic storm.
     Storm,
+    /// Severe magnetic storm.
+    SevereStorm,
     /// Local anomaly of the crust.
     Anomaly,
     /// Card that stands still, or swings by itself.
@@ -150,7 +152,7 @@ const YEAR_S: f64 = 365.25 * DAY_S;
 const USUAL_KN: f64 = 12.0;
 
 /// All kinds.
-pub(crate) const KINDS: [KindRow; 14] = [
+pub(crate) const KINDS: [KindRow; 15] = [
     KindRow {
         kind: Kind::Strike,
         a_year: 1.0,
@@ -223,7 +225,14 @@ pub(crate) const KINDS: [KindRow; 14] = [
     },
     KindRow {
         kind: Kind::Storm,
-        a_year: 8.0,
+        a_year: 6.0,
+        a_call: 0.0,
+        jumps: &[],
+        ending: Ending::After(8.0 * HOUR_S),
+    },
+    KindRow {
+        kind: Kind::SevereStorm,
+        a_year: 2.0,
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(8.0 * HOUR_S),
@@ -299,7 +308,7 @@ impl Kind {
 
     /// Returns true for a disturbance of the earth's own field.
     pub(crate) fn passes_by(self) -> bool {
-        matches!(self, Kind::Storm | Kind::Anomaly)
+        matches!(self, Kind::Storm | Kind::SevereStorm | Kind::Anomaly)
     }
 
     /// Returns true for an event that moves something at once.
@@ -343,7 +352,9 @@ impl Kind {
                 row.gyro_deg.is_some()
             }
             Kind::SatelliteStep | Kind::FailedSatellite => row.satellite_deg.is_some(),
-            Kind::Storm | Kind::Anomaly | Kind::Deflection => row.course.is_none(),
+            Kind::Storm | Kind::SevereStorm | Kind::Anomaly | Kind::Deflection => {
+                row.course.is_none()
+            }
             Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift | Kind::FailedCard => {
                 true
             }

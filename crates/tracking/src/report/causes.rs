@@ -132,7 +132,9 @@ fn shares(kind: Kind, event: &Event, known: &Circumstances) -> Vec<(Cause, f64)>
         Kind::Alignment => vec![(Cause::Alignment, 1.0)],
         Kind::ShipDrift => vec![(Cause::Drift, 1.0)],
         Kind::FailedCard => vec![(Cause::CompassFault, 1.0)],
-        Kind::Storm => passing(Cause::MagneticStorm, (-square(STORM_DEG)).exp()),
+        Kind::Storm | Kind::SevereStorm => {
+            passing(Cause::MagneticStorm, (-square(STORM_DEG)).exp())
+        }
         Kind::Anomaly => passing(Cause::LocalAnomaly, 1.0 / (1.0 + square(ANOMALY_DEG))),
         Kind::GyroStep
         | Kind::SatelliteStep

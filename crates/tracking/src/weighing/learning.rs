@@ -28,7 +28,7 @@ pub(crate) struct Learning {
     log_factors: [f64; LEVELS],
     information: [f64; LEVELS],
     nudged: Vec<Hypothesis>,
-    /// What rows show of each level and is not decided yet: another hypothesis may be right.
+    /// Slopes of each level over rows that another hypothesis may explain yet.
     pending: [Pending; LEVELS],
     levels: Levels,
     rows: usize,

@@ -26,9 +26,8 @@ const LEAST_EXPOSURE_S: f64 = 300.0;
 /// Usual time between rows, seconds.
 const USUAL_ROW_S: f64 = 600.0;
 
-/// Log likelihood ratio from which a jump is worth a look, and a slow growth.
-const JUMP_SEEN: f64 = 3.0;
-const GROWTH_SEEN: f64 = 4.0;
+/// Log likelihood ratio from which a jump or a growth is worth a look.
+const SEEN: f64 = 4.0;
 
 /// Start of an event.
 #[derive(Clone, Copy, Debug)]
@@ -120,7 +119,7 @@ impl Tracker {
         // Disturbances are weighed against whatever else is supposed: where that began, and
         // where they are likeliest themselves.
         let places: Vec<usize> = proposals.iter().map(|p| p.start.place).collect();
-        for kind in [Kind::Storm.row(), Kind::Anomaly.row()] {
+        for kind in KINDS.iter().filter(|kind| kind.kind.passes_by()) {
             if self.is_under_way(kind) {
                 continue;
             }
@@ -248,18 +247,19 @@ impl Tracker {
                 let factor = match kind.kind {
                     kind if kind.is_failed() && !stands => sums.log_factor_of_any_heading(kind),
                     Kind::Storm
+                    | Kind::SevereStorm
                     | Kind::Anomaly
                     | Kind::FailedCard
                     | Kind::FailedGyro
                     | Kind::FailedSatellite => disturbed,
-                    Kind::ShipDrift if greatest >= GROWTH_SEEN => {
+                    Kind::ShipDrift if greatest >= SEEN => {
                         sums.log_bayes_factor(Kind::Strike.row())
                     }
-                    Kind::GyroRamp if greatest >= GROWTH_SEEN => {
+                    Kind::GyroRamp if greatest >= SEEN => {
                         sums.log_bayes_factor(Kind::GyroStep.row())
                     }
                     Kind::ShipDrift | Kind::GyroRamp => continue,
-                    _ if greatest >= JUMP_SEEN => sums.log_bayes_factor(kind),
+                    _ if greatest >= SEEN => sums.log_bayes_factor(kind),
                     _ => continue,
                 };
                 // Every prior is less than one.

@@ -45,7 +45,7 @@ impl Class {
             Kind::Strike | Kind::Cargo | Kind::Alignment | Kind::ShipDrift | Kind::Deflection => {
                 Class::Ship
             }
-            Kind::Storm | Kind::Anomaly => Class::Passing,
+            Kind::Storm | Kind::SevereStorm | Kind::Anomaly => Class::Passing,
             Kind::FailedCard => Class::Compass,
             _ => Class::Reference,
         }

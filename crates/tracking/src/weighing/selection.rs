@@ -9,7 +9,7 @@ use binnacle_compass::time::Timestamp;
 use std::sync::Arc;
 
 /// Log weight below the best's at which a hypothesis is given up.
-const GIVEN_UP: f64 = 16.0;
+const GIVEN_UP: f64 = 12.0;
 /// Most hypotheses.
 const MOST_HYPOTHESES: usize = 40;
 /// Log weight by which another hypothesis takes the lead.

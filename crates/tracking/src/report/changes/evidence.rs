@@ -101,7 +101,7 @@ fn explanation(detected: &Detected, facts: &Facts) -> String {
                 own - kind(posterior, Kind::ShipDrift)
             )
         ),
-        Kind::Storm | Kind::Anomaly => format!(
+        Kind::Storm | Kind::SevereStorm | Kind::Anomaly => format!(
             "the compass was disturbed for a time: a passing disturbance is {against_none} none \
              and {} a change of the vessel",
             likelier(own, of(Class::Ship))
