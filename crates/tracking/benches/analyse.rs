@@ -16,7 +16,7 @@ use binnacle_compass::result::Analysis;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::settings::AnalysisSettings;
 use binnacle_compass::time::Timestamp;
-use binnacle_tracking::Input;
+use binnacle_tracking::{Input, Voyage};
 use divan::Bencher;
 use voyages::{Faults, Variety, sail_on};
 
@@ -39,6 +39,38 @@ fn analyse_gyro_and_satellite(bencher: Bencher<'_, '_>, days: u32) {
         ..Faults::USUAL
     };
     bench_analysis(bencher, days, &faults);
+}
+
+/// A new day on a voyage that was kept after some days: read from its bytes, and put away again.
+#[divan::bench(args = [60, 423], sample_count = 10, sample_size = 1)]
+fn new_day_on_kept_voyage(bencher: Bencher<'_, '_>, days: u32) {
+    let voyage = sail_on(
+        igrf,
+        3,
+        Variety::Medium,
+        f64::from(days + 1),
+        &Faults::USUAL,
+    );
+    let samples: Vec<Sample> = voyage.observations.iter().map(sample).collect();
+    let (before, day) = samples.split_at(samples.len() - 144);
+    let prior = ShipPrior::population();
+    let input = |samples| Input {
+        samples,
+        logbook: &[],
+        azimuths: &[],
+        prior: &prior,
+        settings: AnalysisSettings::default(),
+    };
+    let mut kept = Voyage::begin(&AnalysisSettings::default(), &prior);
+    kept.sail_on(&input(before));
+    let bytes = postcard::to_allocvec(&kept).unwrap();
+    bencher
+        .counter(divan::counter::BytesCount::of_slice(&bytes))
+        .bench_local(|| {
+            let mut voyage: Voyage = postcard::from_bytes(&bytes).unwrap();
+            voyage.sail_on(&input(day));
+            postcard::to_allocvec(&voyage).unwrap().len()
+        });
 }
 
 fn bench_analysis(bencher: Bencher<'_, '_>, days: u32, faults: &Faults) {

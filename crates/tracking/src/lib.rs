@@ -28,6 +28,9 @@
 //! **Learning.** Sizes of habits have log-normal priors and follow the slope of the likelihood
 //! (recursive maximum likelihood: Ljung & Söderström 1983, chapter 3).
 //!
+//! **Kept state.** A [`Voyage`] is a plain value with all that the reading of the next sample
+//! needs: kept and read again, it goes on as if it had never been put away.
+//!
 //! Invariants: the analysis is a pure function of its input; order and repetition of samples
 //! change nothing; every state has a prior, so that no result is ever NaN.
 
@@ -37,4 +40,4 @@ mod state_space;
 pub mod validation;
 mod weighing;
 
-pub use report::{Input, analyse};
+pub use report::{Input, Voyage, analyse};

@@ -16,7 +16,7 @@ pub const CAUTION_H_NT: f64 = 6_000.0;
 pub const PARAMETERS: usize = 7;
 
 /// The earth's field at a place: the parts that do not depend on the ship's heading.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EarthField {
     /// Horizontal part, nT, at least 0.
     pub h_nt: f64,

@@ -16,6 +16,7 @@ use binnacle_compass::azimuth::{Azimuth, AzimuthKind};
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
 use binnacle_compass::time::Timestamp;
+use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -43,7 +44,7 @@ const HELD_DEG: f64 = 0.3;
 const TEACHES: f64 = 20.0;
 
 /// Supposed event.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Event {
     pub(crate) kind: Kind,
     /// Time of the last row before it.
@@ -77,10 +78,26 @@ impl Event {
 
 /// Event with its probability under a hypothesis: less than one where hypotheses with and
 /// without it have become one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Supposed {
+    #[serde(with = "kept_event")]
     pub(crate) event: Arc<Event>,
     pub(crate) probability: f64,
+}
+
+/// Form in which an event is kept: without what other hypotheses share it.
+mod kept_event {
+    use super::Event;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use std::sync::Arc;
+
+    pub(super) fn serialize<S: Serializer>(event: &Arc<Event>, to: S) -> Result<S::Ok, S::Error> {
+        event.as_ref().serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Arc<Event>, D::Error> {
+        Event::deserialize(from).map(Arc::new)
+    }
 }
 
 impl Supposed {
@@ -99,7 +116,7 @@ impl Deref for Supposed {
 }
 
 /// Circumstances in which an event begins or ends.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Begin {
     /// Time of the last row before.
     pub(crate) time: Timestamp,
@@ -112,7 +129,7 @@ pub(crate) struct Begin {
 }
 
 /// Account of what happened.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Hypothesis {
     pub(crate) filter: Filter,
     pub(crate) events: Vec<Supposed>,

@@ -5,9 +5,10 @@ use crate::state_space::states::{ALIGNMENT, ANOMALY, BX, BY, GROWTH, GYRO, SATEL
 use binnacle_analysis::estimate::POPULATION_SD;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::ship::PARAMETERS;
+use serde::{Deserialize, Serialize};
 
 /// Kind of event.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum Kind {
     /// Step of the ship's permanent magnetism.
     Strike,

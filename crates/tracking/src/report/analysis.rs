@@ -8,15 +8,15 @@ use super::diagnostics::record_faults;
 use super::epochs::{Boundaries, Fitting, fit_epochs, spans};
 use super::faults::Faults;
 use super::input::Input;
+use super::marked_readings::MarkedReadings;
 use super::notices::notices;
 use super::overlaps::merge_overlapping;
 use super::references::References;
 use super::row_times::RowTimes;
-use super::voyage::read_voyage;
+use super::voyage::Voyage;
 use crate::state_space::levels::{Level, Levels};
-use binnacle_analysis::readings::berth_stays::{add_berth_changes, mark_alongside};
-use binnacle_analysis::readings::reading::{Reading, readings};
-use binnacle_analysis::readings::stuck_compass::mark_stuck;
+use binnacle_analysis::readings::berth_stays::add_berth_changes;
+use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::coverage::{Coverage, coverage};
 use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::result::{Analysis, ESTIMATOR, NoiseLevels};
@@ -24,18 +24,22 @@ use binnacle_compass::result::{Analysis, ESTIMATOR, NoiseLevels};
 /// Analyses all samples of one compass.
 pub fn analyse(input: &Input<'_>) -> Analysis {
     let logbook = input.logbook;
-    let grade = ReferenceGrade::of(input.samples);
-    let mut readings = readings(input.samples, logbook, &input.settings, grade);
-    let stuck = mark_stuck(&mut readings);
-    let stays = mark_alongside(&mut readings);
-    let course = CourseUse::mark(grade, &mut readings);
-    let voyage = read_voyage(input, &readings);
+    let MarkedReadings {
+        mut readings,
+        grade,
+        stuck,
+        stays,
+        course,
+    } = MarkedReadings::new(input);
+    let mut voyage = Voyage::begin(&input.settings, input.prior);
+    let rows = voyage.read_part(input, &readings);
+    voyage.finish();
     let tracker = &voyage.tracker;
     let detected = merge_overlapping(&tracker.detected);
     let suspected = merge_overlapping(&tracker.suspected());
     let current = tracker.current_ship();
     let until_sailing = tracker.ship_until_sailing();
-    let times = RowTimes::new(&voyage.rows, logbook);
+    let times = RowTimes::new(&rows, logbook);
 
     let faults = Faults::new(&detected, &suspected, times.last());
     let reference_sd_deg = input.settings.reference_constant_sd_deg;
@@ -50,7 +54,7 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
     include_laden(&spans, &mut readings);
     let contradicted = include_contradicted(&spans, &mut readings, logbook);
     let fitting = Fitting {
-        rows: &voyage.rows,
+        rows: &rows,
         predictions: &voyage.predictions,
         detected: &tracker.detected,
         references: &references,

@@ -9,6 +9,7 @@ mod diagnostics;
 mod epochs;
 mod faults;
 mod input;
+mod marked_readings;
 mod notices;
 mod overlaps;
 mod predictions;
@@ -18,3 +19,4 @@ mod voyage;
 
 pub use analysis::analyse;
 pub use input::Input;
+pub use voyage::Voyage;

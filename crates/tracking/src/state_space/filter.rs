@@ -1,21 +1,25 @@
 //! Kalman filter over all states.
 
+use super::arrays::{matrix, vector};
 use super::scalar::Scalar;
 use super::states::{STATES, dot};
 use super::transition::{Gain, Pair, Transition};
 use binnacle_analysis::estimate::{heavy_tailed_loss, weight};
+use serde::{Deserialize, Serialize};
 
 /// Mean and covariance of the states, and the log likelihood of what was read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Filter {
+    #[serde(with = "vector")]
     pub(crate) mean: [f64; STATES],
     /// Boxed, because filters change places.
+    #[serde(with = "matrix")]
     pub(crate) covariance: Box<[[f64; STATES]; STATES]>,
     pub(crate) log_likelihood: f64,
 }
 
 /// Outcome of one reading.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Innovation {
     /// Reading less its prediction.
     pub(crate) value: f64,
@@ -190,7 +194,7 @@ impl Filter {
 }
 
 /// Mean and covariance of some states.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Marginal {
     pub(crate) states: Vec<usize>,
     pub(crate) mean: Vec<f64>,

@@ -5,6 +5,7 @@
 //! Söderström 1983, chapter 3).
 
 use super::row::Row;
+use serde::{Deserialize, Serialize};
 
 /// Size of a habit on a ship that has it more than others.
 const LIVELY: f64 = 4.0;
@@ -12,7 +13,7 @@ const LIVELY: f64 = 4.0;
 pub(crate) const LEVELS: usize = 13;
 
 /// Habit with a size of its own on each ship.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Level {
     /// Noise new in every row, degrees.
     White,
@@ -112,7 +113,7 @@ pub(crate) struct Size {
 }
 
 /// Levels of one ship.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Levels([f64; LEVELS]);
 
 impl Levels {

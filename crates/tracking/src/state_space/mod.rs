@@ -1,5 +1,6 @@
 //! State-space model of a sound ship, her compass, her references and the field around them.
 
+pub(crate) mod arrays;
 pub(crate) mod filter;
 pub(crate) mod levels;
 pub(crate) mod retained;

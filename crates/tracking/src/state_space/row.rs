@@ -10,6 +10,7 @@ use binnacle_compass::position::Position;
 use binnacle_compass::sample::{Sample, SourceId};
 use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 const DAY_S: f64 = 86_400.0;
@@ -32,7 +33,7 @@ const COARSE_SHARE: f64 = 0.95;
 const SAME_DIGIT: f64 = 1e-3;
 
 /// Row of readings.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Row {
     pub(crate) time: Timestamp,
     /// Time since the row before.
@@ -74,7 +75,7 @@ pub(crate) struct Row {
 }
 
 /// Motion over the ground.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Course {
     /// Course over ground, less the charted variation.
     pub(crate) deg: f64,
@@ -84,7 +85,7 @@ pub(crate) struct Course {
 }
 
 /// Straight run so far.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Run {
     until: Timestamp,
     /// Mean compass heading over the last rows.
@@ -109,7 +110,7 @@ impl Run {
 }
 
 /// Maker of rows from samples in order of time: what a row needs of those before it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct RowMaker {
     scatter: Scatter,
     /// Steps in which compass, gyro and satellite compass are read.
@@ -127,7 +128,7 @@ pub(crate) struct RowMaker {
     berth_nt: [f64; 2],
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Last {
     time: Timestamp,
     position: Position,
@@ -309,7 +310,7 @@ impl RowMaker {
 }
 
 /// Steps in which an instrument's headings are read, found from the readings.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Digits {
     readings: u32,
     /// Readings in whole degrees, and in halves.

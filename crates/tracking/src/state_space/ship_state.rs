@@ -9,6 +9,7 @@ use super::states::{
 use binnacle_analysis::estimate::POPULATION_SD;
 use binnacle_compass::model::{Covariance, Parameters};
 use binnacle_compass::ship::PARAMETERS;
+use serde::{Deserialize, Serialize};
 
 /// Number of values: the seven parameters, and the constant.
 const VALUES: usize = PARAMETERS + 1;
@@ -16,7 +17,7 @@ const VALUES: usize = PARAMETERS + 1;
 const STEP_DEG: f64 = 0.01;
 
 /// Seven parameters over λ and the compass's alignment, in the units of [`Covariance`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ShipState {
     pub(crate) mean: [f64; VALUES],
     pub(crate) covariance: Covariance,

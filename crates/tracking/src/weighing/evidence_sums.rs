@@ -12,6 +12,7 @@ use crate::state_space::row::Row;
 use crate::state_space::scalar::{Silent, gyro_share};
 use crate::state_space::states::{ALIGNMENT, BX, BY, GYRO, SATELLITE, SETTLING};
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 /// States whose jumps are looked for.
 pub(crate) const WATCHED: [usize; 5] = [BX, BY, ALIGNMENT, GYRO, SATELLITE];
@@ -30,7 +31,7 @@ const USUAL_ROWS: f64 = 2000.0;
 const SUMS: usize = WATCHED.len();
 
 /// Sums from the first row on.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EvidenceSums {
     information: [[f64; SUMS]; SUMS],
     score: [f64; SUMS],

@@ -6,6 +6,7 @@ use crate::state_space::levels::{LEVELS, Level, Levels};
 use crate::state_space::row::Row;
 use crate::state_space::transition::Transition;
 use binnacle_compass::azimuth::Azimuth;
+use serde::{Deserialize, Serialize};
 
 /// Change of a level's logarithm by which the slope is taken.
 const NUDGE: f64 = 0.05;
@@ -23,7 +24,7 @@ const TURNS: usize = 4;
 const KNOWN_ROWS: usize = 30 * TURN_ROWS;
 
 /// Levels with what is known of them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Learning {
     log_factors: [f64; LEVELS],
     information: [f64; LEVELS],
@@ -35,7 +36,7 @@ pub(crate) struct Learning {
 }
 
 /// Slopes of the likelihood by a level's logarithm over some rows.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Pending {
     slope: f64,
     information: f64,

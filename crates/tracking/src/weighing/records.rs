@@ -4,12 +4,13 @@ use super::evidence_sums::EvidenceSums;
 use crate::hypotheses::hypothesis::{Begin, Event, Hypothesis};
 use crate::hypotheses::kinds::{KINDS, Kind};
 use binnacle_compass::time::Timestamp;
+use serde::{Deserialize, Serialize};
 
 /// Port calls of a usual ship, a year.
 const CALLS_A_YEAR: f64 = 50.0;
 
 /// Filter after some row, with the sums until then.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Checkpoint {
     pub(super) after: usize,
     pub(super) time: Timestamp,
@@ -22,7 +23,7 @@ pub(super) struct Checkpoint {
 }
 
 /// Event that was supposed once, with its log posterior ratio then.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Tried {
     pub(super) kind: Kind,
     pub(super) from: Timestamp,
@@ -30,7 +31,7 @@ pub(super) struct Tried {
 }
 
 /// Subject of a detection: the ship, a reference, what passes by, or the compass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Class {
     Ship,
     Reference,
@@ -73,7 +74,7 @@ impl Class {
 }
 
 /// Event that was detected.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Detected {
     pub(crate) class: Class,
     pub(crate) event: Event,
@@ -85,7 +86,7 @@ pub(crate) struct Detected {
 }
 
 /// Posterior of one event of a class, by all hypotheses.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct EventPosterior {
     /// Probability that such an event happened.
     pub(crate) probability: f64,

@@ -12,6 +12,7 @@ use crate::state_space::ship_state::ShipState;
 use crate::state_space::transition::Transition;
 use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_compass::azimuth::Azimuth;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// Rows that are kept, so that an event may be supposed among them: three days.
@@ -37,6 +38,7 @@ const ALTERNATIVES: usize = 3;
 const NEGLIGIBLE: f64 = 7.0;
 
 /// Accounts of what happened to a ship, by the rows so far.
+#[derive(Serialize, Deserialize)]
 pub(crate) struct Tracker {
     maker: RowMaker,
     reference_sd_deg: f64,

@@ -6,6 +6,7 @@
 //! its own size, in case that noise is taken for slower noise.
 
 use crate::observation::Observation;
+use serde::{Deserialize, Serialize};
 
 /// Windows of ten seconds in ten minutes.
 const FULL_WINDOWS: f64 = 60.0;
@@ -27,7 +28,7 @@ const WINDOWS_OF_ONE_SIGN: f64 = 2.0;
 const LARGEST_DEG: f64 = 3.0;
 
 /// White variance of a row, by the vessel's level.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct WhiteNoise {
     /// Factor on the level's square: 1 for a full row of unit weight at nominal scatter.
     pub factor: f64,
@@ -52,7 +53,7 @@ impl WhiteNoise {
 }
 
 /// Scatter of a vessel's windows so far.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Scatter {
     /// Sum of squares over windows, degrees squared.
     squares: f64,

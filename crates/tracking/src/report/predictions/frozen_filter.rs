@@ -5,6 +5,7 @@
 //! to row, so that the variance of the mean is exact, whatever memories the errors have.
 
 use crate::hypotheses::hypothesis::Hypothesis;
+use crate::state_space::arrays::vector;
 use crate::state_space::filter::{Filter, Innovation};
 use crate::state_space::levels::Levels;
 use crate::state_space::row::Row;
@@ -12,6 +13,7 @@ use crate::state_space::scalar::{Silent, deviation};
 use crate::state_space::states::{ALIGNMENT, STATES, dot};
 use crate::state_space::transition::{Pair, Transition};
 use binnacle_compass::ship::PARAMETERS;
+use serde::{Deserialize, Serialize};
 
 /// Log weight below the best's from which a hypothesis is left out of the mixture.
 const NEGLIGIBLE: f64 = 7.0;
@@ -21,10 +23,11 @@ const NEGLIGIBLE: f64 = 7.0;
 pub(crate) type ShipLoad = [f64; PARAMETERS + 1];
 
 /// Prediction of the mean of a watch's rows.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct FrozenFilter {
     filter: Filter,
     /// Covariance of the states with the weighted sum of the predictions.
+    #[serde(with = "vector")]
     with_sum: [f64; STATES],
     /// Variance of that sum.
     variance: f64,

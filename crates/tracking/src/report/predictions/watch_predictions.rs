@@ -15,6 +15,7 @@ use binnacle_compass::angle::wrap_180;
 use binnacle_compass::result::{PredictionCoverage, expected_inside};
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
+use serde::{Deserialize, Serialize};
 
 /// Greatest length of a watch, and of a gap in it, seconds.
 const WATCH_S: f64 = 4.0 * 3600.0;
@@ -28,7 +29,7 @@ const DAY_MICROS: i64 = 86_400_000_000;
 const BAND_SD: f64 = 1.96;
 
 /// Watch that is over, with its mean less its prediction.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Watch {
     from: Timestamp,
     until: Timestamp,
@@ -37,7 +38,7 @@ struct Watch {
 }
 
 /// Watch that goes on.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct OpenWatch {
     filter: FrozenFilter,
     compass_deg: f64,
@@ -46,7 +47,7 @@ struct OpenWatch {
 }
 
 /// Predictions of an analysis so far.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct WatchPredictions {
     open: Option<OpenWatch>,
     watches: Vec<Watch>,

@@ -1,0 +1,40 @@
+//! Readings of samples, with what excludes some of them.
+
+use super::by_course::CourseUse;
+use super::input::Input;
+use binnacle_analysis::readings::berth_stays::mark_alongside;
+use binnacle_analysis::readings::reading::{Reading, readings};
+use binnacle_analysis::readings::stuck_compass::mark_stuck;
+use binnacle_compass::model::ReferenceGrade;
+use binnacle_compass::result::Change;
+use std::ops::Range;
+
+/// Readings in order of time.
+pub(super) struct MarkedReadings {
+    pub(super) readings: Vec<Reading>,
+    pub(super) grade: ReferenceGrade,
+    /// Times at which the compass stood while the ship turned.
+    pub(super) stuck: Vec<Change>,
+    /// Places of the readings alongside, a range for each stay.
+    pub(super) stays: Vec<Range<usize>>,
+    /// Use of the course over ground, on a ship without heading reference.
+    pub(super) course: Option<CourseUse>,
+}
+
+impl MarkedReadings {
+    /// Takes and marks the readings of an input.
+    pub(super) fn new(input: &Input<'_>) -> MarkedReadings {
+        let grade = ReferenceGrade::of(input.samples);
+        let mut readings = readings(input.samples, input.logbook, &input.settings, grade);
+        let stuck = mark_stuck(&mut readings);
+        let stays = mark_alongside(&mut readings);
+        let course = CourseUse::mark(grade, &mut readings);
+        MarkedReadings {
+            readings,
+            grade,
+            stuck,
+            stays,
+            course,
+        }
+    }
+}
