@@ -33,6 +33,9 @@ pub enum FleetPriorError {
         /// Id of the vessel.
         vessel: String,
     },
+    /// Prior without hypotheses, or with one that has no covariance.
+    #[error("a vessel's prior has no hypothesis with a covariance that is positive definite")]
+    NoHypothesis,
     /// Artefact of another version of the method.
     #[error("the fleet's prior is of method {method}; this program has method {METHOD}")]
     OtherMethod {

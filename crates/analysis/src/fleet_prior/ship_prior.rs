@@ -1,6 +1,6 @@
 //! Prior of one vessel: a mixture of its class and of ships at large.
 
-use super::{Class, Matrix, Vector};
+use super::{Class, FleetPriorError, Matrix, Vector};
 use crate::estimate::POPULATION_SD;
 use binnacle_compass::ship::PARAMETERS;
 use binnacle_compass::time::Timestamp;
@@ -63,6 +63,47 @@ impl ShipPrior {
             components: vec![PriorComponent::population(1.0)],
         }
     }
+
+    /// Returns a normal distribution about the first hypothesis's mean that knows at least as
+    /// much as each hypothesis in every direction. A model fitted with the mixture knows no more
+    /// than this bound and the vessel's own headings together. So its evidence beyond the bound
+    /// counts no prior again, whichever hypothesis the headings chose.
+    ///
+    /// # Errors
+    /// Fails when there is no hypothesis, or one has no covariance.
+    pub fn bound(&self) -> Result<PriorComponent, FleetPriorError> {
+        let mut bound: Option<(Vector, Matrix)> = None;
+        for component in &self.components {
+            let precision = inverse(&component.covariance_in_population_units())?;
+            bound = Some(match bound {
+                Some((mean, before)) => (mean, larger(&before, &precision)?),
+                None => (component.mean_in_population_units(), precision),
+            });
+        }
+        let (mean, precision) = bound.ok_or(FleetPriorError::NoHypothesis)?;
+        let covariance = inverse(&precision)?;
+        Ok(PriorComponent::from_population_units(
+            1.0,
+            &mean,
+            &covariance,
+        ))
+    }
+}
+
+/// Returns the least matrix with the first one's axes that is at least as large as both.
+fn larger(one: &Matrix, other: &Matrix) -> Result<Matrix, FleetPriorError> {
+    let root = one.cholesky().ok_or(FleetPriorError::NoHypothesis)?.l();
+    let back = root.try_inverse().ok_or(FleetPriorError::NoHypothesis)?;
+    let mut ratio = (back * other * back.transpose()).symmetric_eigen();
+    for value in ratio.eigenvalues.iter_mut() {
+        *value = value.max(1.0);
+    }
+    Ok(root * ratio.recompose() * root.transpose())
+}
+
+fn inverse(matrix: &Matrix) -> Result<Matrix, FleetPriorError> {
+    let factor = matrix.cholesky().ok_or(FleetPriorError::NoHypothesis)?;
+    Ok(factor.inverse())
 }
 
 impl PriorComponent {

@@ -4,8 +4,9 @@ mod trial;
 mod world;
 
 use binnacle_analysis::fleet_prior::{Class, FleetPrior, FleetPriorError, ShipEvidence, ShipPrior};
+use nalgebra::SMatrix;
 use trial::{evidence, fleet, sisters, trial, when};
-use world::{Dice, FAR, MEDITERRANEAN, Normal, Voyage, any_ship, known_by_now};
+use world::{Dice, FAR, MEDITERRANEAN, Mixture, Normal, Voyage, any_ship, known_by_now};
 
 #[test]
 fn a_class_much_alike_narrows_the_band_far_away_and_stays_honest() {
@@ -188,19 +189,54 @@ fn the_evidence_is_without_the_prior_of_the_fit() {
         let model = voyage.posterior(&normal).0.model();
         ShipEvidence::new("a", "hash", &model, prior).unwrap()
     };
-    let numbers = |ship: &ShipEvidence| {
-        let json = serde_json::to_value(ship).unwrap();
-        let rows: [[f64; 7]; 7] = serde_json::from_value(json["information"].clone()).unwrap();
-        rows.concat()
-    };
-    let pairs = numbers(&by(class))
-        .into_iter()
-        .zip(numbers(&by(population)));
-    for (one, other) in pairs {
+    let (by_class, by_population) = (information(&by(class)), information(&by(population)));
+    for (one, other) in by_class.iter().zip(&by_population) {
         assert!(
             (one - other).abs() < 1e-3 * (1.0 + other.abs()),
             "{one} {other}"
         );
+    }
+}
+
+#[test]
+fn a_mixtures_bound_knows_at_least_as_much_as_each_hypothesis() {
+    let population = ShipPrior::population();
+    assert_eq!(population.bound().unwrap(), population.components[0]);
+    for seed in 0..20 {
+        let fleet = fleet(2 + seed as usize % 9, 0.5, &mut Dice::new(seed)).prior;
+        let prior = fleet.prior_for("new").unwrap();
+        let bound = prior.bound().unwrap();
+        let bound = Normal::of(&bound.mean, &bound.covariance).covariance;
+        for component in &prior.components {
+            let wider = Normal::of(&component.mean, &component.covariance).covariance - &bound;
+            let least = wider.symmetric_eigenvalues().min();
+            assert!(least > -1e-4, "{least}");
+        }
+    }
+    let none = ShipPrior {
+        basis: None,
+        components: Vec::new(),
+    };
+    assert_eq!(none.bound(), Err(FleetPriorError::NoHypothesis));
+}
+
+#[test]
+fn evidence_beyond_the_bound_counts_no_prior_again() {
+    let dice = &mut Dice::new(11);
+    for _ in 0..20 {
+        let prior = fleet(6, 0.3, dice).prior.prior_for("new").unwrap();
+        let voyage = Voyage::sail(&any_ship(dice), &[MEDITERRANEAN, FAR], 24, 0.5, dice);
+        let by = |prior: &ShipPrior| {
+            let each = prior.components.iter();
+            let each = each.map(|c| (c.weight, Normal::of(&c.mean, &c.covariance)));
+            let model = Mixture(each.collect()).after(&voyage).matched().model();
+            ShipEvidence::new("a", "hash", &model, &prior.bound().unwrap()).unwrap()
+        };
+        let alone = by(&ShipPrior::population());
+        let more = information(&alone) - information(&by(&prior));
+        let least = more.symmetric_eigenvalues().min();
+        let most = information(&alone).symmetric_eigenvalues().max();
+        assert!(least > -0.02 * most, "{least} {most}");
     }
 }
 
@@ -222,6 +258,12 @@ fn without(fleet: &FleetPrior, vessel: &str) -> Vec<ShipEvidence> {
         .filter(|ship| ship.vessel() != vessel)
         .cloned()
         .collect()
+}
+
+fn information(ship: &ShipEvidence) -> SMatrix<f64, 7, 7> {
+    let json = serde_json::to_value(ship).expect("JSON");
+    let rows: [[f64; 7]; 7] = serde_json::from_value(json["information"].clone()).expect("numbers");
+    SMatrix::from_fn(|i, j| rows[i][j])
 }
 
 fn text<T: serde::Serialize>(value: &T) -> String {

@@ -224,6 +224,17 @@ impl Mixture {
         off.dot(&solved) <= CHI_SQUARE
     }
 
+    /// Normal distribution of the same mean and covariance.
+    pub(crate) fn matched(&self) -> Normal {
+        let mean: DVector<f64> = self.0.iter().map(|(w, p)| &p.mean * *w).sum();
+        let mut covariance = DMatrix::zeros(8, 8);
+        for (w, p) in &self.0 {
+            let off = &p.mean - &mean;
+            covariance += (&p.covariance + &off * off.transpose()) * *w;
+        }
+        Normal { mean, covariance }
+    }
+
     fn draw(&self, dice: &mut Dice) -> DVector<f64> {
         let mut left = dice.even();
         let chosen = self.0.iter().find(|(w, _)| {
@@ -245,12 +256,7 @@ impl Mixture {
     /// Share of 24 headings on which the 95 % band of the deviation, by the mixture's mean
     /// and covariance, holds the truth, and the mean half-width of that band, degrees.
     pub(crate) fn band(&self, truth: &Truth, sea: Sea) -> Band {
-        let mean: DVector<f64> = self.0.iter().map(|(w, p)| &p.mean * *w).sum();
-        let mut covariance = DMatrix::zeros(8, 8);
-        for (w, p) in &self.0 {
-            let off = &p.mean - &mean;
-            covariance += (&p.covariance + &off * off.transpose()) * *w;
-        }
+        let Normal { mean, covariance } = self.matched();
         let mut band = Band {
             held: 0.0,
             width: 0.0,
