@@ -162,7 +162,7 @@ async fn analyse_compass(
 ) -> Result<Option<AnalysisResult>> {
     let last_hash = store::last_hash(&app.db, vessel_id, compass_id).await?;
     let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<AnalysisResult>> {
-        let input = stored.decode()?;
+        let input = stored.decode(None)?;
         let input_hash = input::input_hash(&input)?;
         if input.samples.is_empty() || last_hash.as_ref() == Some(&input_hash) {
             return Ok(None);

@@ -26,6 +26,8 @@ pub struct Input {
     pub azimuths: Vec<Azimuth>,
     /// Settings of the operator.
     pub settings: AnalysisSettings,
+    /// Prior from the vessel's fleet, as JSON; none: the population's.
+    pub prior: Option<String>,
 }
 
 /// Stored input of a compass, with its batches as received.
@@ -71,8 +73,13 @@ pub async fn load(
 }
 
 impl StoredInput {
+    /// Tells whether the compass has no batches.
+    pub fn is_empty(&self) -> bool {
+        self.batches.is_empty()
+    }
+
     /// Decodes the batches. It takes long, so it must not run on an async thread.
-    pub fn decode(self) -> anyhow::Result<Input> {
+    pub fn decode(self, prior: Option<String>) -> anyhow::Result<Input> {
         let mut samples = Vec::new();
         for (bytes,) in self.batches {
             let batch = binnacle_wire::decode(&bytes).context("a stored batch cannot be read")?;
@@ -83,6 +90,7 @@ impl StoredInput {
             logbook: self.logbook,
             azimuths: self.azimuths,
             settings: self.settings,
+            prior,
         })
     }
 }
@@ -98,7 +106,8 @@ fn distinct(samples: Vec<Sample>) -> anyhow::Result<Vec<Sample>> {
     Ok(keyed.into_iter().map(|(_, _, sample)| sample).collect())
 }
 
-/// Returns the SHA-256 of estimator, settings, logbook, azimuths and samples, as hexadecimal.
+/// Returns the SHA-256 of estimator, settings, prior, logbook, azimuths and samples, as
+/// hexadecimal. The population's prior is the estimator's own, and adds nothing.
 ///
 /// # Errors
 /// Fails when they cannot be written as JSON.
@@ -106,6 +115,10 @@ pub fn input_hash(input: &Input) -> anyhow::Result<String> {
     let mut hash = Sha256::new();
     hash.update(ESTIMATOR);
     update(&mut hash, &input.settings)?;
+    if let Some(prior) = &input.prior {
+        hash.update(b"\n");
+        hash.update(prior);
+    }
     update(&mut hash, &input.logbook)?;
     for azimuth in &input.azimuths {
         update(&mut hash, azimuth.form())?;
@@ -151,6 +164,7 @@ mod tests {
             logbook: Vec::new(),
             azimuths: Vec::new(),
             settings,
+            prior: None,
         })
         .unwrap()
     }
@@ -193,6 +207,7 @@ mod tests {
             logbook: Vec::new(),
             azimuths: quays_deg.iter().map(azimuth).collect(),
             settings: AnalysisSettings::default(),
+            prior: None,
         })
         .unwrap()
     }
@@ -203,6 +218,25 @@ mod tests {
         let distinct: BTreeSet<String> = hashes.map(hash_of_azimuths).into_iter().collect();
         assert_eq!(distinct.len(), hashes.len());
         assert_eq!(hash_of_azimuths(&[95.0]), hash_of_azimuths(&[95.0]));
+    }
+
+    #[test]
+    fn the_prior_counts_in_the_hash() {
+        let of = |prior: Option<&str>| {
+            let input = Input {
+                samples: vec![sample(0, 91.0)],
+                logbook: Vec::new(),
+                azimuths: Vec::new(),
+                settings: AnalysisSettings::default(),
+                prior: prior.map(str::to_owned),
+            };
+            input_hash(&input).unwrap()
+        };
+        let hashes = [None, Some(r#"{"basis":1}"#), Some(r#"{"basis":2}"#)].map(of);
+        let distinct: BTreeSet<&String> = hashes.iter().collect();
+        assert_eq!(distinct.len(), hashes.len());
+        assert_eq!(hashes[0], hash(vec![sample(0, 91.0)]));
+        assert_eq!(of(Some(r#"{"basis":1}"#)), hashes[1]);
     }
 
     #[test]
