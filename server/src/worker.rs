@@ -1,7 +1,6 @@
 //! Analysis worker: takes jobs from the queue, one after the other.
 
 use binnacle_analysis::advice::sail_next;
-use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_fleet::analysis::Findings;
 use binnacle_fleet::analysis::{AnalysisResult, Covered, input, store};
 use binnacle_fleet::{alerts, analysis_queue, compasses, settings};
@@ -11,6 +10,7 @@ use binnacle_platform::error::{Error, Result};
 use binnacle_platform::events;
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
+use binnacle_priors::{self as priors, VesselPrior};
 use binnacle_tracking::analyse;
 use metrics::{counter, histogram};
 use std::convert::Infallible;
@@ -118,7 +118,11 @@ async fn work(app: &App, job: analysis_queue::Job) -> Result<usize> {
     for compass in &compasses {
         let stored = input::load(&app.db, job.vessel_id, compass.id, now.0).await?;
         next_entry_at = next_entry_at.into_iter().chain(stored.next_entry_at).min();
-        results.extend(analyse_compass(app, job.vessel_id, compass.id, stored).await?);
+        if stored.is_empty() {
+            continue;
+        }
+        let prior = priors::find_or_choose(&app.db, job.vessel_id, compass.id, now).await?;
+        results.extend(analyse_compass(app, job.vessel_id, compass.id, stored, prior).await?);
     }
     let limits = settings::find(&app.db, job.vessel_id).await?.alerts;
     let now: Time = app.clock.now().into();
@@ -159,10 +163,11 @@ async fn analyse_compass(
     vessel_id: VesselId,
     compass_id: CompassId,
     stored: input::StoredInput,
+    prior: VesselPrior,
 ) -> Result<Option<AnalysisResult>> {
     let last_hash = store::last_hash(&app.db, vessel_id, compass_id).await?;
     let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<AnalysisResult>> {
-        let input = stored.decode(None)?;
+        let input = stored.decode(prior.text_from_fleet().map(str::to_owned))?;
         let input_hash = input::input_hash(&input)?;
         if input.samples.is_empty() || last_hash.as_ref() == Some(&input_hash) {
             return Ok(None);
@@ -171,7 +176,7 @@ async fn analyse_compass(
             samples: &input.samples,
             logbook: &input.logbook,
             azimuths: &input.azimuths,
-            prior: &ShipPrior::population(),
+            prior: &prior.prior,
             settings: input.settings,
         });
         let covered = Covered {

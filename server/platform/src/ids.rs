@@ -73,6 +73,7 @@ id!(BinnacleId, "Id of a revision of a binnacle.");
 id!(OrderId, "Id of a work order.");
 id!(PhotoId, "Id of a photograph of a work order.");
 id!(CallId, "Id of a port call.");
+id!(FleetPriorId, "Id of a publication of a fleet's prior.");
 id!(KeyId, "Id of a public key with which a firm signs.");
 id!(
     FeedId,

@@ -25,6 +25,7 @@ use binnacle_platform::{
     audit, audit_api, error, event_stream, events, mail, oidc, session, session_api, users,
     webhooks,
 };
+use binnacle_priors as priors;
 use serde_json::json;
 use std::time::Duration;
 use tower_http::catch_panic::CatchPanicLayer;
@@ -114,6 +115,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(logbook::router())
         .merge(azimuths::router())
         .merge(models::router())
+        .merge(priors::router())
         .merge(deviation_table::router())
         .merge(card::router())
         .merge(deviation_book::router())

@@ -12,6 +12,7 @@ mod changes;
 mod course_over_ground;
 mod deviation_book;
 mod enrolment;
+mod fleet_prior;
 mod ingest;
 mod logbook;
 mod overview;

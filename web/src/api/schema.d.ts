@@ -488,6 +488,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/fleet-priors": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List the fleet's published priors
+         * @description A class is published when a new vessel needs it, at most once in 30 days.
+         */
+        get: operations["list_fleet_priors"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/invitations/accept": {
         parameters: {
             query?: never;
@@ -2232,6 +2252,23 @@ export interface paths {
          * @description The call is kept, marked as withdrawn, and no longer counts. Withdrawing it again changes nothing.
          */
         post: operations["withdraw_port_call"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/prior": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See the prior that a compass's analysis began with */
+        get: operations["find_prior"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -5495,6 +5532,41 @@ export interface components {
              */
             version: number;
         };
+        /**
+         * Format: uuid
+         * @description Id of a publication of a fleet's prior.
+         */
+        FleetPriorId: string;
+        /** @description A page of publications. */
+        FleetPriorList: {
+            /** @description The newest first. */
+            items: components["schemas"]["FleetPriorSummary"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /** @description A publication of what a fleet's vessels say of a new one. */
+        FleetPriorSummary: {
+            /** @description Class of the vessels. */
+            class: components["schemas"]["PriorClass"];
+            /** @description The estimator whose analyses begin with it. */
+            estimator: string;
+            /** @description The publication's id. */
+            id: components["schemas"]["FleetPriorId"];
+            /**
+             * Format: int64
+             * @description Version of the method.
+             */
+            method: number;
+            /** @description Time of the publication. */
+            published_at: components["schemas"]["Time"];
+            /** @description Role of the compasses. */
+            role: components["schemas"]["CompassRole"];
+            /**
+             * Format: int64
+             * @description Number of vessels with evidence.
+             */
+            ships: number;
+        };
         /** @description Report on a fleet: due dates, deviations and completed work. */
         FleetReport: {
             /** @description Number of their compasses. */
@@ -6657,6 +6729,11 @@ export interface components {
             imo_number?: string | null;
             /** @description Its name. */
             name: string;
+            /**
+             * @description Name of its class of sister ships, the same for each of them.
+             * @example Handymax 38
+             */
+            sister_class?: string | null;
         };
         /** @description Webhook to be created or changed. */
         NewWebhook: {
@@ -7747,6 +7824,44 @@ export interface components {
              */
             widening: number;
         };
+        /** @description Prior knowledge that a compass's analysis began with. */
+        Prior: {
+            basis: components["schemas"]["PriorBasis"] | null;
+            chosen_at: components["schemas"]["Time"] | null;
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description The estimator that began with it; none before the first analysis. */
+            estimator: string | null;
+            /** @description Classes that were too small to inform the vessel. */
+            refused: components["schemas"]["RefusedPriorClass"][];
+        };
+        /** @description Vessels that a prior was made of. */
+        PriorBasis: {
+            /** @description Their class. */
+            class: components["schemas"]["PriorClass"];
+            /**
+             * Format: int32
+             * @description Version of the method.
+             */
+            method: number;
+            /** @description Time of the publication. */
+            published_at: components["schemas"]["Time"];
+            /**
+             * @description Their number, without the vessel itself.
+             * @example 12
+             */
+            ships: number;
+        };
+        /** @description Vessels that inform each other. */
+        PriorClass: {
+            /** @enum {string} */
+            kind: "sisters";
+            /** @description Sister ships, by the name of their class. */
+            name: string;
+        } | {
+            /** @enum {string} */
+            kind: "operator";
+        };
         /** @description Error as it is sent (RFC 9457). */
         Problem: {
             card_withdrawn?: components["schemas"]["CardWithdrawn"] | null;
@@ -8121,6 +8236,21 @@ export interface components {
         } | {
             /** @enum {string} */
             reason: "not_converged";
+        };
+        /** @description A class that was too small to inform a vessel. */
+        RefusedPriorClass: {
+            /** @description The class. */
+            class: components["schemas"]["PriorClass"];
+            /**
+             * @description Least number.
+             * @example 2
+             */
+            needed: number;
+            /**
+             * @description Number of other vessels with evidence.
+             * @example 1
+             */
+            ships: number;
         };
         /** @description Greatest deviation of a compass, at the place of its model. */
         ReportDeviation: {
@@ -9220,6 +9350,8 @@ export interface components {
              */
             open_alerts: number;
             out_of_service_at: components["schemas"]["Time"] | null;
+            /** @description Name of its class of sister ships. */
+            sister_class: string | null;
             worst: components["schemas"]["WorstHeading"] | null;
             worst_alert: components["schemas"]["Severity"] | null;
         };
@@ -9252,6 +9384,12 @@ export interface components {
             in_service?: boolean | null;
             /** @description Name. */
             name?: string | null;
+            /**
+             * @description Name of its class of sister ships, the same for each of them. A vessel keeps the prior that
+             *     she was derived with.
+             * @example Handymax 38
+             */
+            sister_class?: string | null;
         };
         /** @description Data of an event. */
         VesselEvent: {
@@ -11380,6 +11518,58 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Fleet"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_fleet_priors: {
+        parameters: {
+            query?: {
+                /** @description Maximum number of items; 100 by default. */
+                limit?: number;
+                /** @description `next` of the previous page. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FleetPriorList"];
                 };
             };
             /** @description Bad Request */
@@ -19139,6 +19329,67 @@ export interface operations {
             };
             /** @description Unprocessable Entity */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_prior: {
+        parameters: {
+            query?: {
+                /** @description A compass of the vessel; its first one by default. */
+                compass?: components["schemas"]["CompassId"];
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Prior"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -30,6 +30,11 @@ pub(super) struct Amendment {
     #[serde(default)]
     #[schema(value_type = Option<String>, max_length = 200, example = "no coils fitted")]
     degaussing: Amended<String>,
+    /// Name of its class of sister ships, the same for each of them. A vessel keeps the prior that
+    /// she was derived with.
+    #[serde(default)]
+    #[schema(value_type = Option<String>, max_length = 200, example = "Handymax 38")]
+    sister_class: Amended<String>,
     /// False takes the vessel out of service: it leaves the fleet's lists, has no needs and raises
     /// no alert. All its records stay, and what its agents send is kept.
     pub(super) in_service: Option<bool>,
@@ -44,6 +49,7 @@ impl Amendment {
             call_sign: self.call_sign.over(vessel.call_sign),
             flag: self.flag.over(vessel.flag),
             degaussing: self.degaussing.over(vessel.degaussing),
+            sister_class: self.sister_class.over(vessel.sister_class),
         };
         amended.checked()
     }

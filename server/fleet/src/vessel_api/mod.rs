@@ -57,6 +57,9 @@ pub struct Vessel {
     /// State of its degaussing coils, in words.
     #[schema(required)]
     pub degaussing: Option<String>,
+    /// Name of its class of sister ships.
+    #[schema(required)]
+    pub sister_class: Option<String>,
     /// Time at which it was entered.
     pub created_at: Time,
     /// Time from which it is out of service.
@@ -243,6 +246,7 @@ impl VesselRow {
             call_sign: self.call_sign,
             flag: self.flag,
             degaussing: self.degaussing,
+            sister_class: self.sister_class,
             created_at: self.created_at,
             out_of_service_at: self.out_of_service_at,
             last_upload_at: self.last_upload_at,

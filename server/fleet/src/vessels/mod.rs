@@ -48,6 +48,10 @@ pub struct NewVessel {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 200, example = "no coils fitted")]
     pub degaussing: Option<String>,
+    /// Name of its class of sister ships, the same for each of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(max_length = 200, example = "Handymax 38")]
+    pub sister_class: Option<String>,
 }
 
 impl NewVessel {
@@ -73,6 +77,7 @@ impl NewVessel {
             call_sign: optional_text("call_sign", self.call_sign.as_deref())?,
             flag: optional_text("flag", self.flag.as_deref())?,
             degaussing: optional_text("degaussing", self.degaussing.as_deref())?,
+            sister_class: optional_text("sister_class", self.sister_class.as_deref())?,
         })
     }
 }

@@ -24,6 +24,8 @@ pub struct VesselRow {
     pub flag: Option<String>,
     /// State of its degaussing coils.
     pub degaussing: Option<String>,
+    /// Name of its class of sister ships.
+    pub sister_class: Option<String>,
     /// Time at which it was entered.
     pub created_at: Time,
     /// Time of its last batch.
@@ -74,7 +76,7 @@ pub(crate) async fn list(
     rows!(
         db,
         VesselRow,
-        "SELECT id, name, imo_number, call_sign, flag, degaussing, created_at,
+        "SELECT id, name, imo_number, call_sign, flag, degaussing, sister_class, created_at,
                 last_upload_at, last_sample_at, last_lat, last_lon, out_of_service_at
          FROM vessels
          WHERE operator_id = $1 AND id > $2 AND (out_of_service_at IS NULL) = $3
@@ -92,7 +94,7 @@ pub async fn find_row(db: &Db, operator: OperatorId, id: VesselId) -> Result<Opt
     row!(
         db,
         VesselRow,
-        "SELECT id, name, imo_number, call_sign, flag, degaussing, created_at,
+        "SELECT id, name, imo_number, call_sign, flag, degaussing, sister_class, created_at,
                 last_upload_at, last_sample_at, last_lat, last_lon, out_of_service_at
          FROM vessels
          WHERE id = $2 AND operator_id = $1
@@ -147,8 +149,8 @@ pub(crate) async fn insert(
     execute!(
         tx,
         "INSERT INTO vessels (id, operator_id, name, imo_number, call_sign, flag, degaussing,
-                              created_at)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
+                              sister_class, created_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)",
         id,
         operator,
         new.name.as_str(),
@@ -156,6 +158,7 @@ pub(crate) async fn insert(
         new.call_sign.as_deref(),
         new.flag.as_deref(),
         new.degaussing.as_deref(),
+        new.sister_class.as_deref(),
         now
     )?;
     Ok(())
@@ -175,7 +178,7 @@ pub(crate) async fn lock(
         VesselRow,
         "UPDATE vessels SET name = name
          WHERE id = $2 AND operator_id = $1
-         RETURNING id, name, imo_number, call_sign, flag, degaussing, created_at,
+         RETURNING id, name, imo_number, call_sign, flag, degaussing, sister_class, created_at,
                    last_upload_at, last_sample_at, last_lat, last_lon, out_of_service_at",
         operator,
         id
@@ -187,14 +190,16 @@ pub(crate) async fn lock(
 pub(crate) async fn update(tx: &mut Tx, id: VesselId, amended: &NewVessel) -> Result<()> {
     execute!(
         tx,
-        "UPDATE vessels SET name = $2, imo_number = $3, call_sign = $4, flag = $5, degaussing = $6
+        "UPDATE vessels SET name = $2, imo_number = $3, call_sign = $4, flag = $5, degaussing = $6,
+             sister_class = $7
          WHERE id = $1",
         id,
         amended.name.as_str(),
         amended.imo_number.as_deref(),
         amended.call_sign.as_deref(),
         amended.flag.as_deref(),
-        amended.degaussing.as_deref()
+        amended.degaussing.as_deref(),
+        amended.sister_class.as_deref()
     )?;
     Ok(())
 }
