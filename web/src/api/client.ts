@@ -141,6 +141,14 @@ export const findCoverage = (id: string, compass?: string) =>
     }),
   );
 
+/** What a compass's model started from. */
+export const findPrior = (id: string, compass?: string) =>
+  answer(
+    client.GET('/api/v1/vessels/{id}/prior', {
+      params: { path: { id }, query: which(compass) },
+    }),
+  );
+
 /** A compass's epochs, and what changed between them. */
 export const findTimeline = (id: string, compass?: string) =>
   answer(

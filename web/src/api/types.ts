@@ -109,6 +109,7 @@ export type PlannedJob = Schemas['PlannedJob'];
 export type Port = Schemas['Port'];
 export type PortCall = Schemas['PortCall'];
 export type PortCallUpload = Schemas['PortCallUpload'];
+export type Prior = Schemas['Prior'];
 export type Schedule = Schemas['Schedule'];
 export type SchedulePlan = Schemas['SchedulePlan'];
 export type SchedulePlanSummary = Schemas['SchedulePlanSummary'];

@@ -1,10 +1,19 @@
 import { readFileSync } from 'node:fs';
 import { describe, expect, test } from 'vitest';
-import type { Caution, Model, References, Refusal } from '../api/types';
+import type { Caution, Model, Prior, References, Refusal } from '../api/types';
 import { band95, standardError, widestBand } from './band';
 import { goodRanges, magneticLatitudeOf, watersOf, worstWaters, type Waters } from './reach';
 import { refusalWords } from './refusal';
-import { cautionWords, dropped, elsewhere, here, predictions, references, worth } from './trust';
+import {
+  cautionWords,
+  dropped,
+  elsewhere,
+  here,
+  predictions,
+  references,
+  startedFrom,
+  worth,
+} from './trust';
 
 /** The page that says what a model is, with a worked example. */
 const page = readFileSync(new URL('../../../docs/model.md', import.meta.url), 'utf8');
@@ -39,6 +48,32 @@ describe('the band', () => {
     expect(widestBand({ ...example, covariance: null }, biscay)).toBeNull();
     expect(widestBand(example, { h_nt: 1_500, z_nt: 58_000 })).toBeNull();
     expect(standardError([[-1]], [1])).toBeNull();
+  });
+});
+
+describe('what a model started from', () => {
+  const atLarge: Prior = {
+    compass_id: 'c',
+    estimator: 'e',
+    chosen_at: '2026-11-20T07:00:00Z',
+    basis: null,
+    refused: [],
+  };
+  const basis = { method: 1, published_at: '2026-11-03T09:00:00Z', ships: 12 };
+
+  test('names the class of sister ships, their number and the publication', () => {
+    const sisters = { kind: 'sisters', name: 'Handy' } as const;
+    const { figure, meaning } = startedFrom({ ...atLarge, basis: { ...basis, class: sisters } });
+    expect(figure).toBe('12 sister ships');
+    expect(meaning).toContain('Class “Handy”, as published on 3 Nov 2026.');
+    const fleet = { ...basis, class: { kind: 'operator' } as const };
+    expect(startedFrom({ ...atLarge, basis: fleet }).figure).toBe('12 ships of this fleet');
+  });
+
+  test('says when too few other vessels were known', () => {
+    expect(startedFrom(atLarge).meaning).toContain('usual in ships');
+    const alone = { class: { kind: 'operator' } as const, ships: 1, needed: 2 };
+    expect(startedFrom({ ...atLarge, refused: [alone] }).meaning).toMatch(/^Too few/);
   });
 });
 

@@ -1,6 +1,6 @@
 /** How far a model can be trusted, in an officer's words. */
 
-import type { Caution, DeviationRow, Model, Predictions, References } from '../api/types';
+import type { Caution, DeviationRow, Model, Predictions, Prior, References } from '../api/types';
 import { count, day, degrees, heading, microtesla, time } from '../format';
 import * as text from '../text';
 import { size } from './advice';
@@ -62,6 +62,21 @@ export function worth(model: Model): Statement | null {
     figure: count(effective),
     meaning: t().worth(count(model.samples_used), count(effective)),
   };
+}
+
+/** What the model started from, before the vessel's own samples. */
+export function startedFrom({ basis, refused }: Prior): Statement {
+  if (!basis) {
+    const meaning = refused.length > 0 ? t().priorTooFew : t().priorUsual;
+    return { figure: t().priorAtLarge, meaning };
+  }
+  const ships = count(basis.ships);
+  const published = day(basis.published_at);
+  if (basis.class.kind === 'sisters') {
+    const meaning = t().priorOfSisters(basis.class.name, published);
+    return { figure: t().priorSisters(ships), meaning };
+  }
+  return { figure: t().priorFleet(ships), meaning: t().priorOfFleet(published) };
 }
 
 /** What has been measured since an adjustment that foretold the model. */

@@ -11,6 +11,7 @@ import {
   findDeviation,
   findModel,
   findPicture,
+  findPrior,
   findTimeline,
   findVessel,
   listAgents,
@@ -32,6 +33,7 @@ import type {
   LogbookEntry,
   ModelVersion,
   PortCall,
+  Prior,
   SamplePicture,
   SchedulePlan,
   Timeline,
@@ -60,6 +62,8 @@ export class ShownVessel {
   /** What is planned for the whole fleet; nothing before the first plan. */
   plan = new Resource<SchedulePlan | null>();
   model = new Resource<ModelVersion>();
+  /** What the model started from. */
+  prior = new Resource<Prior>();
   picture = new Resource<SamplePicture>();
   coverage = new Resource<Coverage>();
   timeline = new Resource<Timeline>();
@@ -103,8 +107,10 @@ export class ShownVessel {
   loadPlan = () => this.plan.load(async () => (await findSchedule()).plan ?? null);
   loadModel = async () => {
     await this.model.load(() => findModel(this.id, this.compass));
+    if (this.model.value) void this.loadPrior();
     await this.#loadForetelling();
   };
+  loadPrior = () => this.prior.load(() => findPrior(this.id, this.compass));
   loadCoverage = () => this.coverage.load(() => findCoverage(this.id, this.compass));
   loadTimeline = () => this.timeline.load(() => findTimeline(this.id, this.compass));
   loadPicture = () => this.picture.load(() => findPicture(this.id, this.#since(), this.compass));
@@ -166,7 +172,8 @@ export class ShownVessel {
 
   chooseCompass = (chosen: string): void => {
     this.compass = chosen;
-    const ofCompass = [this.model, this.placed, this.picture, this.coverage, this.timeline];
+    const { model, prior, placed, picture, coverage, timeline } = this;
+    const ofCompass = [model, prior, placed, picture, coverage, timeline];
     for (const resource of ofCompass) resource.clear();
     this.#loadScience();
   };

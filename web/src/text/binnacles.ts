@@ -104,6 +104,7 @@ export const particulars = {
   callSign: 'Call sign',
   flag: 'Flag',
   degaussing: 'Degaussing coils, as they are set',
+  sisterClass: 'Class of sister ships',
   role: 'Serves as',
   roles: {
     standard: 'Standard compass',

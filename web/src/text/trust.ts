@@ -20,6 +20,17 @@ export const trust = {
   worthTitle: 'Her samples are worth',
   worth: (samples: string, effective: string) =>
     `${samples} samples, worth ${effective} with independent errors: a gyro’s errors last for hours and days, the variation’s for tens of miles, so that samples repeat each other.`,
+  priorTitle: 'The model started from',
+  priorSisters: (ships: string) => `${ships} sister ships`,
+  priorOfSisters: (name: string, published: string) =>
+    `Class “${name}”, as published on ${published}. The vessel’s own samples come on top, and ships unlike this class stay possible.`,
+  priorFleet: (ships: string) => `${ships} ships of this fleet`,
+  priorOfFleet: (published: string) =>
+    `As published on ${published}. The vessel’s own samples come on top, and ships unlike this fleet stay possible.`,
+  priorAtLarge: 'Ships at large',
+  priorUsual: 'It started from what is usual in ships, without other vessels of this fleet.',
+  priorTooFew:
+    'Too few other vessels of this fleet were known at the first analysis, so it started from what is usual in ships.',
   predictionsTitle: 'Predicted before it was read',
   predictions: (inside: string, watches: string) => `${inside} of ${watches}`,
   predictionsHeld: (from: string, to: string) =>
