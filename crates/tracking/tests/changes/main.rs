@@ -6,6 +6,7 @@ mod berths;
 mod cargo;
 mod causes;
 mod disturbances;
+mod drifts;
 mod faults;
 mod large_errors;
 mod strikes;
