@@ -150,6 +150,30 @@ fn wild_readings_hours_apart_are_no_fault_of_the_gyro() {
 }
 
 #[test]
+fn a_fault_of_the_satellite_compass_is_named_whichever_way_it_errs() {
+    for (seed, off_deg) in [(31, 3.0), (32, -3.0), (33, 1.5), (35, -2.0)] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let start = log.start;
+        let is_off =
+            |s: &&mut Sample| (25.0..30.0).contains(&(s.time.seconds_since(start) / 86_400.0));
+        for sample in log.samples.iter_mut().filter(is_off) {
+            sample.satellite = sample.satellite.map(|heading| turned(heading, off_deg));
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let reported = certain(&analysis);
+        assert!(
+            reported.iter().all(|c| c.cause == Cause::ReferenceFault),
+            "seed {seed}: {reported:?}"
+        );
+        let names_it = |line: &String| line.contains("the satellite compass had failed");
+        let mut evidence = reported.iter().flat_map(|c| &c.evidence);
+        assert!(evidence.any(names_it), "seed {seed}: {reported:?}");
+        assert_eq!(analysis.epochs.len(), 1, "seed {seed}");
+    }
+}
+
+#[test]
 fn a_jammed_card_that_trembles_much_is_reported_once() {
     for seed in [61, 62, 64] {
         let mut log = sail_log(seed, &calm(Event::Nothing));
