@@ -136,6 +136,37 @@ fn on_a_quiet_voyage_nothing_changes() {
     }
 }
 
+/// Ships on which a change of the vessel led for a few rows, without any event.
+#[test]
+fn a_change_that_later_samples_do_not_confirm_is_withdrawn() {
+    let mut withdrawn = 0;
+    for (seed, until_day) in [(107_004, 22.0), (107_100, 40.0)] {
+        let plan = Plan {
+            days: 40.0,
+            ..Plan::new(Event::Nothing, Variety::Poor)
+        };
+        let log = sail_log(seed, &plan);
+        let sailed = |s: &Sample| s.time.seconds_since(log.start) < until_day * 24.0 * HOUR_S;
+        let analysis = run(&log.samples[..log.samples.partition_point(sailed)]);
+        is_sound(&analysis);
+        assert!(of_the_ship(&analysis).is_empty(), "{:?}", analysis.changes);
+        assert_eq!(analysis.epochs.len(), 1, "seed {seed}");
+        let was_the_ships = |c: &&Change| c.withdrawn && c.cause.changes_deviation();
+        for change in analysis.changes.iter().filter(was_the_ships) {
+            assert!(!change.confirmed && change.ended > Some(change.detected_at));
+            assert!(change.evidence.iter().any(|e| e.contains("is withdrawn")));
+            assert_eq!((change.step, change.deviation_change_deg), (None, None));
+            // In between it was certain.
+            let is_before = |s: &Sample| s.time <= change.detected_at;
+            let then = run(&log.samples[..log.samples.partition_point(is_before)]);
+            assert_eq!(of_the_ship(&then).len(), 1, "{:?}", then.changes);
+            assert_eq!(then.epochs.len(), 2, "seed {seed}");
+            withdrawn += 1;
+        }
+    }
+    assert!(withdrawn > 0);
+}
+
 fn certain(analysis: &Analysis) -> usize {
     analysis.changes.iter().filter(|c| c.confirmed).count()
 }
