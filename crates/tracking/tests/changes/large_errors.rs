@@ -2,7 +2,7 @@
 
 use crate::voyages::fleet::{Event, Log, sail_log};
 use crate::{calm, certain, run};
-use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::result::{Analysis, Cause, Change};
 use binnacle_compass::time::Timestamp;
 
@@ -86,6 +86,27 @@ fn what_is_gone_within_hours_at_sea_is_no_strike() {
             !analysis.changes.iter().any(|c| c.confirmed && struck(c)),
             "seed {seed}: {:?}",
             analysis.changes
+        );
+    }
+}
+
+#[test]
+fn no_compass_is_reported_as_off_by_more_than_half_a_turn() {
+    for (seed, off_deg) in [(61, 181.0), (62, -179.0), (67, 175.0)] {
+        let (log, from) = with_error(seed, 96 * AN_HOUR, |_| off_deg);
+        let end = log.samples.partition_point(|s| s.time < from) + 96 * AN_HOUR;
+        let analysis = run(&log.samples[..end]);
+        let reported = reported(&analysis);
+        let sizes: Vec<f64> = reported
+            .iter()
+            .filter_map(|c| c.deviation_change_deg)
+            .collect();
+        assert_eq!(sizes.len(), 1, "seed {seed}: {reported:?}");
+        assert!(sizes[0] <= 180.0, "seed {seed}: {sizes:?}");
+        let turned_deg = wrap_180(off_deg).abs();
+        assert!(
+            (sizes[0] - turned_deg).abs() < 1.0,
+            "seed {seed}: {sizes:?}"
         );
     }
 }
