@@ -396,7 +396,7 @@ fn deflected(position: Position, from_h: usize, to_h: usize, deg: Swing) -> Vec<
 
 /// A deflection of two hours and more, the same on two headings, that comes and goes.
 fn short_deflection(lat: f64, lon: f64, hours_ago: usize) -> Vec<Sample> {
-    let bump = |i: f64| (4.0 + 0.8 * (2.1 * i).cos()) * (PI * (i + 0.5) / 14.0).sin().max(0.0);
+    let bump = |i: f64| (4.0 + (2.1 * i).cos()) * (PI * (i + 0.5) / 14.0).sin().max(0.0);
     deflected(position(lat, lon), hours_ago + 3, hours_ago, bump)
 }
 
