@@ -243,7 +243,7 @@ impl Sailing<'_> {
         let at = Sample {
             sog_kn: Some(passage.speed_kn),
             rate_of_turn_deg_min: Some(0.0),
-            spread_deg: Some(0.4),
+            spread_deg: Some(self.habits.spread_deg()),
             windows: 6,
             cog: self.habits.course_over_ground(moment),
             roll_deg: self.habits.measured_roll_deg(),

@@ -70,6 +70,8 @@ pub(crate) struct Row {
     pub(crate) berth_nt: [f64; 2],
     pub(crate) roll_rad: Option<f64>,
     pub(crate) rate_of_turn_deg_min: f64,
+    /// Card's motion of late over the usual.
+    pub(crate) sea: f64,
     pub(crate) white: WhiteNoise,
     pub(crate) difference_white: WhiteNoise,
 }
@@ -235,6 +237,7 @@ impl RowMaker {
             berth_nt: self.berth_nt,
             roll_rad: sample.roll_deg.map(f64::to_radians),
             rate_of_turn_deg_min: sample.rate_of_turn_deg_min.unwrap_or(0.0),
+            sea: self.scatter.sea(),
             white,
             difference_white,
         })

@@ -222,7 +222,9 @@ fn mix_events(events: &mut Vec<Supposed>, others: &[Supposed], share: f64) {
     events.retain(|event| event.probability > NEGLIGIBLE_EVENT);
 }
 
-/// Returns true if two hypotheses speak of one event.
+/// Returns true if two hypotheses speak of one event: of the same times, or of what is under way
+/// by both.
 fn is_one(a: &Supposed, b: &Supposed) -> bool {
-    a.kind == b.kind && a.from.seconds_since(b.from).abs() <= SAME_S
+    let is_under_way = !a.kind.is_sudden() && a.until.is_none() && b.until.is_none();
+    a.kind == b.kind && (is_under_way || a.from.seconds_since(b.from).abs() <= SAME_S)
 }

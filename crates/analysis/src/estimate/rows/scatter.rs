@@ -18,6 +18,8 @@ const INTERRUPTED_FACTOR: f64 = 1.5;
 const NOMINAL_DEG: f64 = 0.5;
 /// Weight of the vessel's usual scatter beside a row's own, in windows.
 const SHRINKING_WINDOWS: f64 = 8.0;
+/// Windows by which the scatter of late is known.
+const RECENT_WINDOWS: f64 = 20.0;
 /// Weight of the nominal scatter beside the vessel's at the start, in windows.
 const STARTING_WINDOWS: f64 = 600.0;
 /// Share of white noise that the sea does not cause: rounding, sensors.
@@ -58,6 +60,8 @@ pub struct Scatter {
     /// Sum of squares over windows, degrees squared.
     squares: f64,
     windows: f64,
+    /// Mean square of late, weighed by the windows.
+    recent: f64,
 }
 
 impl Default for Scatter {
@@ -66,11 +70,17 @@ impl Default for Scatter {
         Scatter {
             squares: STARTING_WINDOWS * NOMINAL_DEG * NOMINAL_DEG,
             windows: STARTING_WINDOWS,
+            recent: NOMINAL_DEG * NOMINAL_DEG,
         }
     }
 }
 
 impl Scatter {
+    /// Returns the scatter of late over the usual: the sea.
+    pub fn sea(&self) -> f64 {
+        (self.recent * self.windows / self.squares).sqrt()
+    }
+
     /// Returns the white noise of a row's deviation, and adds the row.
     pub fn white(&mut self, o: &Observation) -> WhiteNoise {
         let windows = windows(o);
@@ -80,8 +90,9 @@ impl Scatter {
                 let own = spread_deg.clamp(0.0, LARGEST_DEG).powi(2);
                 self.squares += windows * own;
                 self.windows += windows;
-                let square =
-                    (SHRINKING_WINDOWS * usual + windows * own) / (SHRINKING_WINDOWS + windows);
+                self.recent += (own - self.recent) * windows / (RECENT_WINDOWS + windows);
+                let square = (SHRINKING_WINDOWS * self.recent + windows * own)
+                    / (SHRINKING_WINDOWS + windows);
                 (square, square)
             }
             None => (usual, 0.0),

@@ -14,6 +14,9 @@ const SPELL_MINUTES: f64 = 1440.0;
 /// Angle of drift, standard deviation, and the minutes over which it is forgotten.
 const DRIFT_DEG: f64 = 2.5;
 const DRIFT_MINUTES: f64 = 360.0;
+/// Scatter of a sample's windows in usual weather, and their number.
+const SPREAD_DEG: f64 = 0.4;
+const SPREAD_WINDOWS: u32 = 6;
 /// Nanotesla in a microtesla.
 const NT_IN_UT: f64 = 1000.0;
 
@@ -67,6 +70,14 @@ impl Instruments {
 
     pub(super) fn card_noise(&self, sizes: &Habits) -> f64 {
         (sizes.weather * self.weather).exp()
+    }
+
+    pub(super) fn spread_deg(&self, sizes: &Habits, rng: &mut ChaCha8Rng) -> f64 {
+        if sizes.weather == 0.0 {
+            return SPREAD_DEG;
+        }
+        let squares: f64 = (0..SPREAD_WINDOWS).map(|_| gauss(rng).powi(2)).sum();
+        SPREAD_DEG * self.card_noise(sizes) * (squares / f64::from(SPREAD_WINDOWS)).sqrt()
     }
 
     pub(super) fn read(&self, sizes: &Habits, now: &Moment, read: [f64; 3]) -> [f64; 3] {

@@ -108,6 +108,12 @@ impl HabitState {
         self.instruments.card_noise(&self.sizes)
     }
 
+    /// Returns the scatter of a sample's windows: the card's noise, and what few windows show of
+    /// it.
+    pub(super) fn spread_deg(&mut self) -> f64 {
+        self.instruments.spread_deg(&self.sizes, &mut self.rng)
+    }
+
     /// Returns the readings of compass, gyro and satellite compass with the habits' errors.
     pub(super) fn read(&self, now: &Moment, read: [f64; 3]) -> [f64; 3] {
         self.instruments.read(&self.sizes, now, read)
