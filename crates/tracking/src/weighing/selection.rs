@@ -10,6 +10,9 @@ use std::sync::Arc;
 
 /// Log weight below the best's at which a hypothesis is given up.
 const GIVEN_UP: f64 = 12.0;
+/// The same for the likeliest that supposes fewer changes of the ship than the lead. What a
+/// storm on one course feigns shows at the next turn.
+const RIVAL_GIVEN_UP: f64 = 40.0;
 /// Most hypotheses.
 const MOST_HYPOTHESES: usize = 40;
 /// Log weight by which another hypothesis takes the lead.
@@ -87,10 +90,18 @@ impl Tracker {
         let lead = bank.remove(0);
         bank.sort_by(|a, b| b.log_weight().total_cmp(&a.log_weight()));
         kept.push(lead);
+        let mut has_rival = false;
         for hypothesis in bank {
-            if hypothesis.log_weight() < best - GIVEN_UP || kept.len() >= MOST_HYPOTHESES {
+            let is_rival = changes(&hypothesis) < changes(&kept[0]);
+            let given_up = if is_rival && !has_rival {
+                RIVAL_GIVEN_UP
+            } else {
+                GIVEN_UP
+            };
+            if hypothesis.log_weight() < best - given_up || kept.len() >= MOST_HYPOTHESES {
                 continue;
             }
+            has_rival |= is_rival;
             let twin = kept
                 .iter()
                 .position(|other| is_same(other, &hypothesis, merges));
@@ -129,6 +140,13 @@ impl Tracker {
             self.learning.mix_with(&other.filter, share);
         }
     }
+}
+
+/// Returns the number of changes of the ship that a hypothesis supposes.
+fn changes(hypothesis: &Hypothesis) -> usize {
+    likely(hypothesis)
+        .filter(|event| !event.kind.passes_by())
+        .count()
 }
 
 /// Returns the events that a hypothesis supposes, without those that it only may have.
