@@ -19,7 +19,7 @@ const NOMINAL_DEG: f64 = 0.5;
 /// Weight of the vessel's usual scatter beside a row's own, in windows.
 const SHRINKING_WINDOWS: f64 = 8.0;
 /// Windows by which the scatter of late is known.
-const RECENT_WINDOWS: f64 = 20.0;
+const RECENT_WINDOWS: f64 = 300.0;
 /// Weight of the nominal scatter beside the vessel's at the start, in windows.
 const STARTING_WINDOWS: f64 = 600.0;
 /// Share of white noise that the sea does not cause: rounding, sensors.

@@ -14,9 +14,10 @@ const SPELL_MINUTES: f64 = 1440.0;
 /// Angle of drift, standard deviation, and the minutes over which it is forgotten.
 const DRIFT_DEG: f64 = 2.5;
 const DRIFT_MINUTES: f64 = 360.0;
-/// Scatter of a sample's windows in usual weather, and their number.
+/// Scatter of a sample's windows in usual weather, and the number of those that are independent:
+/// the card swings over several.
 const SPREAD_DEG: f64 = 0.4;
-const SPREAD_WINDOWS: u32 = 6;
+const SPREAD_WINDOWS: u32 = 20;
 /// Nanotesla in a microtesla.
 const NT_IN_UT: f64 = 1000.0;
 
