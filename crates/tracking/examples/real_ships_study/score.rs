@@ -69,8 +69,22 @@ fn false_reports<'a>(analysis: &'a Analysis, log: &'a Log) -> impl Iterator<Item
     analysis.changes.iter().filter(|change| {
         let group = group(change);
         let mut happened = log.happened.iter();
-        group.is_some() && !happened.any(|h| deserved(h.what) == group && near(h, change))
+        group.is_some()
+            && !happened.any(|h| {
+                (deserved(h.what) == group && near(h, change)) || is_decay_after_dock(h, change)
+            })
     })
+}
+
+/// Days over which a ship's magnetism decays after a dry dock, to a twentieth.
+const DECAY_DAYS: f64 = 90.0;
+
+/// Returns true if a change is the drift after a dry dock.
+fn is_decay_after_dock(happened: &Happened, change: &Change) -> bool {
+    let days = change.from.seconds_since(happened.from) / DAY_S;
+    happened.what == Name::DryDock
+        && change.cause == Cause::Drift
+        && (0.0..DECAY_DAYS).contains(&days)
 }
 
 /// Prints the false reports of a ship.

@@ -308,13 +308,10 @@ fn deviation_by(row: &Row, mean: &[f64; STATES], reference: &Reference, variance
     let needle = ship.needle(fused_deg, row);
     let innovation = innovation_at(&needle) / per_compass(&needle);
     ship.load(row, &needle, &mut load);
-    // The reference's noise turns the compass's reading, the more the weaker the field is on it.
-    let turns = needle.compass_per_magnetic().max(1.0);
-    let by_reference = (1.0 - REFERENCE_SHARE) * turns * turns;
     Scalar {
         innovation,
         load,
-        variance: variance * (REFERENCE_SHARE + by_reference),
+        variance,
         considered: None,
     }
 }

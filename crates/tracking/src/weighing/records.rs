@@ -66,8 +66,8 @@ impl Class {
     /// for nothing does not come.
     fn false_alarms_a_year(self) -> f64 {
         match self {
-            Class::Ship => 0.1,
-            Class::Reference | Class::Passing => 0.2,
+            Class::Ship => 0.08,
+            Class::Reference | Class::Passing => 0.1,
             Class::Compass => 0.02,
         }
     }
