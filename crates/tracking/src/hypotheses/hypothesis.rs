@@ -22,12 +22,8 @@ use std::sync::Arc;
 
 /// Growth of a ramping gyro's error, degrees squared a second: a degree in a day.
 const RAMP_DEG2_PER_S: f64 = 1.0 / 86_400.0;
-/// Memory and standard deviation of a storm's variation, where H is usual: of a storm of the
-/// Kp index 7, and of one of 9 (ranges in three hours by the K index of Niemegk).
+/// Memory of a storm's variation, seconds.
 const STORM_S: f64 = 3600.0;
-const STORM_DEG: f64 = 0.9;
-const SEVERE_STORM_DEG: f64 = 2.0;
-
 /// Change of the induced parameters by work that leaves them, over the population.
 const WORKED_INDUCED: f64 = 0.4;
 /// Change of the alignment by work on the compass, degrees.
@@ -373,11 +369,12 @@ impl Hypothesis {
 
     fn adjust(&self, transition: &mut Transition, row: &Row) {
         for kind in self.lasting() {
+            if let Some(deg) = kind.row().storm_deg {
+                transition.disturb(row.seconds, STORM_S, deg);
+            }
             match kind {
                 Kind::ShipDrift => transition.grow(row.seconds / 86_400.0),
                 Kind::GyroRamp => transition.added[GYRO] += RAMP_DEG2_PER_S * row.seconds,
-                Kind::Storm => transition.disturb(row.seconds, STORM_S, STORM_DEG),
-                Kind::SevereStorm => transition.disturb(row.seconds, STORM_S, SEVERE_STORM_DEG),
                 Kind::Anomaly => transition.pass_anomaly(row.seconds),
                 _ => {}
             }

@@ -1,6 +1,6 @@
 //! The table of events: how often each kind happens, what it moves, and how it ends.
 
-use crate::state_space::row::Row;
+use crate::state_space::row::{Row, USUAL_KN};
 use crate::state_space::states::{ALIGNMENT, ANOMALY, BX, BY, GROWTH, GYRO, SATELLITE, SETTLING};
 use binnacle_analysis::estimate::POPULATION_SD;
 use binnacle_compass::logbook::LogbookKind;
@@ -138,6 +138,8 @@ pub(crate) struct KindRow {
     pub(crate) a_call: f64,
     pub(crate) jumps: &'static [Jump],
     pub(crate) ending: Ending,
+    /// Standard deviation of the variation in a storm, degrees where H is usual.
+    pub(crate) storm_deg: Option<f64>,
 }
 
 const fn jump(state: usize, sd: f64) -> Jump {
@@ -149,10 +151,9 @@ const GROWTH_SD: f64 = 2000.0 / POPULATION_SD[BX] / 30.0;
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;
 const YEAR_S: f64 = 365.25 * DAY_S;
-/// Usual speed of a ship, knots.
-const USUAL_KN: f64 = 12.0;
 
-/// All kinds.
+/// All kinds. Storms are those of the Kp indices 7 and 9 (ranges in three hours by the K index of
+/// Niemegk).
 pub(crate) const KINDS: [KindRow; 15] = [
     KindRow {
         kind: Kind::Strike,
@@ -166,6 +167,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
             jump(6, 0.05),
         ],
         ending: Ending::InPort(0.02),
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::Cargo,
@@ -181,6 +183,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
             jump(6, 0.4),
         ],
         ending: Ending::InPort(0.3),
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::Alignment,
@@ -188,6 +191,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.002,
         jumps: &[jump(ALIGNMENT, 6.0)],
         ending: Ending::Never,
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::ShipDrift,
@@ -195,6 +199,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[jump(GROWTH, GROWTH_SD), jump(GROWTH + 1, GROWTH_SD)],
         ending: Ending::After(40.0 * DAY_S),
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::GyroStep,
@@ -202,6 +207,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.005,
         jumps: &[jump(GYRO, 6.0)],
         ending: Ending::After(3.0 * DAY_S),
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::SatelliteStep,
@@ -209,6 +215,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.005,
         jumps: &[jump(SATELLITE, 6.0)],
         ending: Ending::After(3.0 * DAY_S),
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::GyroSettling,
@@ -216,6 +223,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.01,
         jumps: &[jump(SETTLING, 3.0)],
         ending: Ending::Never,
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::GyroRamp,
@@ -223,6 +231,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(6.0 * DAY_S),
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::Storm,
@@ -230,6 +239,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(8.0 * HOUR_S),
+        storm_deg: Some(0.9),
     },
     KindRow {
         kind: Kind::SevereStorm,
@@ -237,6 +247,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(8.0 * HOUR_S),
+        storm_deg: Some(2.0),
     },
     KindRow {
         kind: Kind::Anomaly,
@@ -244,6 +255,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::AfterMiles(25.0),
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::FailedCard,
@@ -251,6 +263,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(DAY_S),
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::FailedGyro,
@@ -258,6 +271,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(DAY_S),
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::FailedSatellite,
@@ -265,6 +279,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(DAY_S),
+        storm_deg: None,
     },
     KindRow {
         kind: Kind::Deflection,
@@ -272,6 +287,7 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[jump(BX, 1.2), jump(BY, 1.2)],
         ending: Ending::After(3.0 * HOUR_S),
+        storm_deg: None,
     },
 ];
 

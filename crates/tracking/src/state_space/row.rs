@@ -17,7 +17,7 @@ const DAY_S: f64 = 86_400.0;
 /// Time between rows, beyond that of sailing from one to the other, that counts as a port
 /// call, seconds. Where the speed is not known the ship sails at the usual one, knots.
 pub(crate) const PORT_GAP_S: f64 = 2.5 * 3600.0;
-const USUAL_KN: f64 = 10.0;
+pub(crate) const USUAL_KN: f64 = 10.0;
 /// Noise of the velocity over the ground across it in a mean of minutes, knots: receiver and
 /// seaway. It is a degree at 6 knots.
 const COURSE_NOISE_KN: f64 = 0.1;

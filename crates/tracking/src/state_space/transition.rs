@@ -110,7 +110,11 @@ impl Transition {
         } else {
             t.instruments(row, levels);
         }
-        t.fade(SWING, seconds / COMPASS_SWING_S, levels.at(Level::Swing) * row.sea);
+        t.fade(
+            SWING,
+            seconds / COMPASS_SWING_S,
+            levels.at(Level::Swing) * row.sea,
+        );
         t.fade(
             VARIATION,
             row.miles / VARIATION_NM,

@@ -1,18 +1,12 @@
 //! Events that have become certain, and what is detected of them.
 
+use super::limits::{IMPROBABLE, ROW_S, SETTLED_S};
 use super::records::{Class, Detected, EventPosterior};
-use super::selection::SETTLED_S;
 use super::tracker::Tracker;
 use crate::hypotheses::hypothesis::{Event, Hypothesis, Supposed};
 use crate::hypotheses::kinds::Kind;
 use binnacle_compass::time::Timestamp;
 
-/// Seconds within which two accounts speak of the same event, at least.
-const LEAST_WINDOW_S: f64 = 1200.0;
-/// Posterior probability from which a date of an event is credible.
-const DATED: f64 = 0.02;
-/// Posterior probability from which an event is suspected.
-const SUSPECTED: f64 = 0.5;
 /// Posterior probability below which a detected event is withdrawn.
 const WITHDRAWN: f64 = 0.3;
 
@@ -71,7 +65,7 @@ impl<'a> Marginals<'a> {
                 nearest = [nearest[0].min(apart), nearest[0].max(apart)];
             }
         }
-        (nearest[1] / 2.0).clamp(LEAST_WINDOW_S, kind.dated_within_s())
+        (nearest[1] / 2.0).clamp(2.0 * ROW_S, kind.dated_within_s())
     }
 
     /// Returns the lead's events that are not among those detected.
@@ -134,7 +128,7 @@ impl<'a> Marginals<'a> {
                         (likeliest_end, found.end) = (weight, Some(end));
                     }
                 }
-                if weight > DATED {
+                if weight > IMPROBABLE {
                     found.earliest = found.earliest.min(event.from);
                     found.latest = found.latest.max(event.from);
                 }
@@ -226,7 +220,7 @@ impl Tracker {
         };
         Marginals::new(&self.bank)
             .undetected(&self.detected, last.time)
-            .filter(|judged| judged.posterior.probability > SUSPECTED)
+            .filter(|judged| judged.posterior.probability > 0.5)
             .map(|judged| judged.detected(last.time))
             .collect()
     }

@@ -5,6 +5,7 @@
 //! them, nearly: the filter takes up some of it meanwhile. That is enough to propose an event;
 //! it is judged by a filter of its own.
 
+use super::limits::WEEK_ROWS;
 use crate::hypotheses::hypothesis::Read;
 use crate::hypotheses::kinds::{Jump, Kind, KindRow};
 use crate::state_space::filter::Innovation;
@@ -16,18 +17,16 @@ use serde::{Deserialize, Serialize};
 
 /// States whose jumps are looked for.
 pub(crate) const WATCHED: [usize; 5] = [BX, BY, ALIGNMENT, GYRO, SATELLITE];
-/// Largest square of an innovation that counts as a disturbance: a wild reading is no more.
-const LARGEST_SQUARE: f64 = 18.0;
 /// Cost in squares of taking the noise for a disturbance's: twice the logarithm of the ratio of
 /// standard deviations.
 const WIDER_COST: f64 = 2.0;
 /// Cost of a reading that says nothing against one of a quarter of a degree, without what
 /// [`WIDER_COST`] has of it.
 const ANY_HEADING_COST: f64 = 3.3;
+/// Largest square of an innovation that counts as a disturbance: a wild reading is no more.
+const LARGEST_SQUARE: f64 = 18.0;
 /// Largest innovation that counts for a jump, standard deviations.
 const LARGEST_SD: f64 = 6.0;
-/// Innovations over which the usual square is taken.
-const USUAL_ROWS: f64 = 2000.0;
 const SUMS: usize = WATCHED.len();
 
 /// Sums from the first row on.
@@ -77,7 +76,7 @@ impl EvidenceSums {
         }
         let square = z_squared.min(LARGEST_SQUARE);
         let usual = self.usual.unwrap_or(1.0);
-        self.usual = Some(usual + (square - usual) / USUAL_ROWS);
+        self.usual = Some(usual + (square - usual) / (2 * WEEK_ROWS) as f64);
         let excess = square - usual - WIDER_COST;
         self.excess += excess;
         0.5 * excess - ANY_HEADING_COST

@@ -1,5 +1,6 @@
 //! Learning of a ship's levels by the slope of the likelihood.
 
+use super::limits::{DAY_ROWS, WEEK_ROWS};
 use crate::hypotheses::hypothesis::Hypothesis;
 use crate::state_space::filter::Filter;
 use crate::state_space::levels::{LEVELS, Level, Levels};
@@ -8,20 +9,16 @@ use crate::state_space::transition::Transition;
 use binnacle_compass::azimuth::Azimuth;
 use serde::{Deserialize, Serialize};
 
-/// Change of a level's logarithm by which the slope is taken.
+/// Change of a level's logarithm by which the slope is taken, and the greatest step of it for one
+/// row.
 const NUDGE: f64 = 0.05;
 /// Greatest knowledge of a level's logarithm, one over its variance: habits change.
 const MOST_KNOWN: f64 = 400.0;
-/// Greatest step of a level's logarithm for one row.
-const LARGEST_STEP: f64 = 0.05;
 /// Most that one row teaches: as much as two readings of the level itself.
 const MOST_TAUGHT: f64 = 4.0;
 
-/// Rows of a turn, and the number of turns among which the brief levels are shared once a ship
-/// is known.
-const TURN_ROWS: usize = 144;
+/// Number of days among which the brief levels are shared once a ship is known.
 const TURNS: usize = 4;
-const KNOWN_ROWS: usize = 30 * TURN_ROWS;
 
 /// Levels with what is known of them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -76,15 +73,17 @@ impl Learning {
         }
     }
 
-    /// Returns true if a level is looked at in this row: after a month the brief ones take turns.
+    /// Returns true if a level is looked at in this row: after four weeks the brief ones take turns.
     fn is_on(&self, nth: usize, level: Level) -> bool {
-        self.rows < KNOWN_ROWS || !level.is_brief() || nth % TURNS == self.rows / TURN_ROWS % TURNS
+        self.rows < 4 * WEEK_ROWS
+            || !level.is_brief()
+            || nth % TURNS == self.rows / DAY_ROWS % TURNS
     }
 
     /// Makes ready for the next row, which `lead` has not read yet: a level whose turn begins
     /// starts from it.
     pub(crate) fn prepare(&mut self, lead: &Hypothesis) {
-        if !self.rows.is_multiple_of(TURN_ROWS) || self.rows < KNOWN_ROWS {
+        if !self.rows.is_multiple_of(DAY_ROWS) || self.rows < 4 * WEEK_ROWS {
             return;
         }
         for (nth, level) in Level::ALL.into_iter().enumerate() {
@@ -136,7 +135,7 @@ impl Learning {
             if pending.rows > 0.0 {
                 let known = self.information[i] + pending.information;
                 self.information[i] = known.min(MOST_KNOWN);
-                let largest = LARGEST_STEP * pending.rows;
+                let largest = NUDGE * pending.rows;
                 let step = pending.slope / self.information[i];
                 self.log_factors[i] += step.clamp(-largest, largest);
             }

@@ -3,6 +3,7 @@
 mod detected;
 mod evidence_sums;
 mod learning;
+mod limits;
 mod logged;
 mod proposals;
 pub(crate) mod records;

@@ -1,7 +1,8 @@
 //! Proposals of events where innovations suggest them.
 
+use super::limits::{BETTER, DAY_ROWS, ROW_S, UNCERTAIN};
 use super::records::Tried;
-use super::tracker::{DRIFT_ROWS, Tracker};
+use super::tracker::Tracker;
 use crate::hypotheses::hypothesis::{Begin, Hypothesis};
 use crate::hypotheses::kinds::{KINDS, Kind, KindRow};
 use crate::state_space::row::Row;
@@ -11,23 +12,9 @@ use binnacle_compass::time::Timestamp;
 
 /// Starts of an event between rows that are weighed at a time.
 const STARTS: usize = 2;
-/// Log posterior ratio from which an event is supposed.
-const SUPPOSED: f64 = -4.0;
-/// Rise of it from which an event is weighed again.
-const TRIED_AGAIN: f64 = 2.0;
 /// Greatest turn of an instrument that stood, and least of a ship that turned, degrees.
 const STOOD_DEG: f64 = 2.0;
 const TURNED_DEG: f64 = 10.0;
-/// Greatest change of a drift angle, degrees.
-const DRIFT_ANGLE_DEG: f64 = 30.0;
-/// Least time between checkpoints for which an event's prior counts, seconds.
-const LEAST_EXPOSURE_S: f64 = 300.0;
-
-/// Usual time between rows, seconds.
-const USUAL_ROW_S: f64 = 600.0;
-
-/// Log likelihood ratio from which a jump or a growth is worth a look.
-const SEEN: f64 = 4.0;
 
 /// Start of an event.
 #[derive(Clone, Copy, Debug)]
@@ -101,7 +88,7 @@ impl Tracker {
 
     /// Proposes events that the innovations suggest, and replays the rows under them.
     pub(super) fn suppose_events(&mut self) {
-        let likeliest = self.likeliest_starts(SUPPOSED);
+        let likeliest = self.likeliest_starts(-UNCERTAIN);
         let mut proposals: Vec<Proposal> = Vec::new();
         for (kind, starts) in KINDS.iter().zip(likeliest) {
             if self.is_under_way(kind) {
@@ -131,10 +118,10 @@ impl Tracker {
                 let Some(log_prior) = self.log_prior(place, kind) else {
                     continue;
                 };
-                if proposals.iter().any(same) || self.was_tried(kind.kind, from, SUPPOSED) {
+                if proposals.iter().any(same) || self.was_tried(kind.kind, from, -UNCERTAIN) {
                     continue;
                 }
-                let score = SUPPOSED;
+                let score = -UNCERTAIN;
                 let start = Start {
                     place,
                     log_prior,
@@ -156,7 +143,7 @@ impl Tracker {
     pub(super) fn suppose_drift(&mut self, begin: &Begin) {
         let kind = Kind::ShipDrift.row();
         if !self.bank[0].has(kind.kind) {
-            let probability = kind.probability(DRIFT_ROWS as f64 * USUAL_ROW_S, false);
+            let probability = kind.probability(DAY_ROWS as f64 * ROW_S, false);
             let drifting = self.bank[0].with_event(kind.kind, begin, probability.ln());
             self.bank.push(drifting);
         }
@@ -211,7 +198,7 @@ impl Tracker {
                 stood(compass)
                     && (moved(gyro, TURNED_DEG)
                         || moved(satellite, TURNED_DEG)
-                        || moved(course, TURNED_DEG + DRIFT_ANGLE_DEG))
+                        || moved(course, 4.0 * TURNED_DEG))
             }
             Kind::FailedGyro => {
                 stood(gyro) && (moved(compass, TURNED_DEG) || moved(satellite, TURNED_DEG))
@@ -229,7 +216,7 @@ impl Tracker {
         }
         let next = self.checkpoints.get(place + 1);
         let next = next.map_or(self.rows.back()?.time, |next| next.time);
-        let seconds = next.seconds_since(checkpoint.time).max(LEAST_EXPOSURE_S);
+        let seconds = next.seconds_since(checkpoint.time).max(ROW_S);
         let probability = kind.probability(seconds, checkpoint.begin.in_port);
         (probability > 0.0).then(|| probability.ln())
     }
@@ -252,14 +239,14 @@ impl Tracker {
                     | Kind::FailedCard
                     | Kind::FailedGyro
                     | Kind::FailedSatellite => disturbed,
-                    Kind::ShipDrift if greatest >= SEEN => {
+                    Kind::ShipDrift if greatest >= UNCERTAIN => {
                         sums.log_bayes_factor(Kind::Strike.row())
                     }
-                    Kind::GyroRamp if greatest >= SEEN => {
+                    Kind::GyroRamp if greatest >= UNCERTAIN => {
                         sums.log_bayes_factor(Kind::GyroStep.row())
                     }
                     Kind::ShipDrift | Kind::GyroRamp => continue,
-                    _ if greatest >= SEEN => sums.log_bayes_factor(kind),
+                    _ if greatest >= UNCERTAIN => sums.log_bayes_factor(kind),
                     _ => continue,
                 };
                 // Every prior is less than one.
@@ -293,7 +280,7 @@ impl Tracker {
         self.tried.iter().any(|tried| {
             tried.kind == kind
                 && tried.from.seconds_since(from).abs() <= 300.0 + 0.1 * age_s
-                && score < tried.score + TRIED_AGAIN
+                && score < tried.score + BETTER
         })
     }
 

@@ -1,5 +1,9 @@
 //! Selection of hypotheses: the lead, those that are dropped, and those that are merged.
 
+use super::limits::{
+    BETTER, DAY_ROWS, GIVEN_UP, HOUR_ROWS, IMPROBABLE, MOST_HYPOTHESES, OUTDATED_S, RIVAL_GIVEN_UP,
+    SAME_S, SETTLED_S, WEEK_ROWS,
+};
 use super::tracker::Tracker;
 use crate::hypotheses::hypothesis::{Hypothesis, Supposed};
 use crate::hypotheses::kinds::{Ending, Kind};
@@ -8,38 +12,14 @@ use crate::state_space::states::STATES;
 use binnacle_compass::time::Timestamp;
 use std::sync::Arc;
 
-/// Log weight below the best's at which a hypothesis is given up.
-const GIVEN_UP: f64 = 12.0;
-/// The same for the likeliest that supposes fewer changes of the ship than the lead. What a
-/// storm on one course feigns shows at the next turn.
-const RIVAL_GIVEN_UP: f64 = 40.0;
-/// Most hypotheses.
-const MOST_HYPOTHESES: usize = 40;
-/// Log weight by which another hypothesis takes the lead.
-const TAKES_LEAD: f64 = 1.0;
-/// Rows after which the starting guesses are one.
-const STARTING_ROWS: usize = 1000;
-/// Seconds within which two events of a kind are the same.
-const SAME_S: f64 = 6.0 * 3600.0;
-/// Probability below which an event is left out of a hypothesis.
-const NEGLIGIBLE_EVENT: f64 = 0.01;
-/// Rows between looks for hypotheses that have become alike, and the difference of means in
-/// standard deviations up to which they are.
-const ALIKE_ROWS: usize = 36;
+/// Difference of means in standard deviations up to which two hypotheses are alike.
 const ALIKE: f64 = 0.4;
-
-/// Seconds after which an event that is over, or whose end is none, is no longer judged.
-pub(super) const SETTLED_S: f64 = 20.0 * 86_400.0;
-/// Seconds after which a state from before an event is too old to return to.
-const OUTDATED_S: f64 = 180.0 * 86_400.0;
-/// Rows between looks for events that are settled.
-const SETTLING_ROWS: usize = 144;
 
 impl Tracker {
     /// Drops events that are settled from every hypothesis: hypotheses that differ in nothing
     /// else become one.
     pub(super) fn settle(&mut self, now: Timestamp) {
-        if !self.count.is_multiple_of(SETTLING_ROWS) {
+        if !self.count.is_multiple_of(DAY_ROWS) {
             return;
         }
         for hypothesis in &mut self.bank {
@@ -65,11 +45,11 @@ impl Tracker {
     /// Puts the best first, and drops those that are hopeless or the same as a better one.
     pub(super) fn prune(&mut self) {
         let lead_weight = self.bank[0].log_weight();
-        if self.best() > lead_weight + TAKES_LEAD {
+        if self.best() > lead_weight + BETTER {
             self.weigh_alternatives();
         }
         let best = self.best();
-        let leader = if best > lead_weight + TAKES_LEAD {
+        let leader = if best > lead_weight + BETTER {
             self.bank
                 .iter()
                 .position(|h| h.log_weight() >= best)
@@ -84,7 +64,7 @@ impl Tracker {
             self.sums = self.sums.restarted();
             self.learning.restart(&self.bank[0]);
         }
-        let merges = self.count > STARTING_ROWS;
+        let merges = self.count > WEEK_ROWS;
         let mut kept: Vec<Hypothesis> = Vec::new();
         let mut bank = std::mem::take(&mut self.bank);
         let lead = bank.remove(0);
@@ -115,7 +95,7 @@ impl Tracker {
             }
         }
         self.bank = kept;
-        if self.count.is_multiple_of(ALIKE_ROWS) {
+        if self.count.is_multiple_of(6 * HOUR_ROWS) {
             self.merge_alike();
         }
     }
@@ -237,7 +217,7 @@ fn mix_events(events: &mut Vec<Supposed>, others: &[Supposed], share: f64) {
             });
         }
     }
-    events.retain(|event| event.probability > NEGLIGIBLE_EVENT);
+    events.retain(|event| event.probability > IMPROBABLE);
 }
 
 /// Returns true if two hypotheses speak of one event: of the same times, or of what is under way

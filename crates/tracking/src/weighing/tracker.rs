@@ -2,6 +2,7 @@
 
 use super::evidence_sums::EvidenceSums;
 use super::learning::Learning;
+use super::limits::{ALTERNATIVES, CERTAIN, DAY_ROWS, HOUR_ROWS, KEPT_ROWS, NEGLIGIBLE, UNCERTAIN};
 use super::records::{Checkpoint, Detected, Tried};
 use crate::hypotheses::hypothesis::{Begin, Hypothesis, Read};
 use crate::hypotheses::kinds::{Kind, Stay};
@@ -15,27 +16,10 @@ use binnacle_compass::azimuth::Azimuth;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// Rows that are kept, so that an event may be supposed among them: three days.
-const KEPT_ROWS: usize = 432;
-/// Rows between checkpoints.
-const CHECKPOINT_ROWS: usize = 6;
-/// Rows of late after each of which there is a checkpoint.
-const RECENT_ROWS: usize = 12;
-/// Rows between looks for events, and for ends of events that do not show in one row.
+/// Rows between looks for events.
 const LOOK_ROWS: usize = 2;
-const END_ROWS: usize = 6;
-/// Rows after each of which a drift may begin.
-pub(super) const DRIFT_ROWS: usize = 144;
 /// Greatest time between an azimuth and the row in whose circumstances it is read, seconds.
 const AZIMUTH_NEAR_S: f64 = 6.0 * 3600.0;
-/// Log weight below the best's down to which a hypothesis has branches.
-const PLAUSIBLE: f64 = 6.0;
-/// Log weight below the best's down to which an event is supposed after a hypothesis, too, and
-/// the most that are so beside the lead.
-const ABOUT_AS_LIKELY: f64 = 4.0;
-const ALTERNATIVES: usize = 3;
-/// Log weight below the best's from which a hypothesis is left out of the mixture.
-const NEGLIGIBLE: f64 = 7.0;
 
 /// Accounts of what happened to a ship, by the rows so far.
 #[derive(Serialize, Deserialize)]
@@ -96,7 +80,7 @@ impl Tracker {
         }
         self.keep_checkpoint(&row);
         self.suppose_endings(&row);
-        if self.count.is_multiple_of(DRIFT_ROWS) {
+        if self.count.is_multiple_of(DAY_ROWS) {
             self.suppose_drift(&self.begin(&row));
         }
         let tracked = self.read_all(&row);
@@ -145,7 +129,7 @@ impl Tracker {
         let recent = self
             .checkpoints
             .back()
-            .filter(|_| !row.after_port && !self.count.is_multiple_of(CHECKPOINT_ROWS));
+            .filter(|_| !row.after_port && !self.count.is_multiple_of(HOUR_ROWS));
         Begin {
             time: last.time,
             ship: recent.map_or_else(|| self.ship(last), |recent| recent.begin.ship.clone()),
@@ -187,9 +171,9 @@ impl Tracker {
     fn keep_checkpoint(&mut self, row: &Row) {
         let begin = self.begin(row);
         let time = begin.time;
-        if let Some(old) = self.checkpoints.len().checked_sub(RECENT_ROWS)
+        if let Some(old) = self.checkpoints.len().checked_sub(2 * HOUR_ROWS)
             && let Some(checkpoint) = self.checkpoints.get(old)
-            && !(checkpoint.before_gap || checkpoint.after.is_multiple_of(CHECKPOINT_ROWS))
+            && !(checkpoint.before_gap || checkpoint.after.is_multiple_of(HOUR_ROWS))
         {
             self.checkpoints.remove(old);
         }
@@ -208,7 +192,7 @@ impl Tracker {
     fn plausible(&self) -> Vec<Hypothesis> {
         let best = self.best();
         let others = self.bank[1..].iter();
-        let others = others.filter(|h| h.log_weight() > best - ABOUT_AS_LIKELY);
+        let others = others.filter(|h| h.log_weight() > best - UNCERTAIN);
         let lead = std::iter::once(&self.bank[0]);
         lead.chain(others.take(ALTERNATIVES)).cloned().collect()
     }
@@ -222,7 +206,7 @@ impl Tracker {
         let mut wild = Vec::new();
         for (i, hypothesis) in self.bank.iter_mut().enumerate() {
             let before = hypothesis.filter.log_likelihood;
-            let is_plausible = hypothesis.log_weight() > best - PLAUSIBLE;
+            let is_plausible = hypothesis.log_weight() > best - NEGLIGIBLE;
             let untaught = (is_plausible && hypothesis.may_teach()).then(|| hypothesis.clone());
             let read = hypothesis.read(row, &levels, &usual);
             if let Some(untaught) = untaught.filter(|_| read.teaches()) {
@@ -250,13 +234,13 @@ impl Tracker {
         let best = lead.log_weight();
         lead.lasting().all(Kind::changes_deviation)
             && self.bank[1..].iter().all(|other| {
-                other.events.len() == lead.events.len() || other.log_weight() < best - 3.0
+                other.events.len() == lead.events.len() || other.log_weight() < best - CERTAIN
             })
     }
 
     fn suppose_endings(&mut self, row: &Row) {
-        if row.after_port || self.count.is_multiple_of(END_ROWS) {
-            self.suppose_endings_of(row, END_ROWS, |kind| !kind.ends_at_once());
+        if row.after_port || self.count.is_multiple_of(HOUR_ROWS) {
+            self.suppose_endings_of(row, HOUR_ROWS, |kind| !kind.ends_at_once());
         }
         self.suppose_endings_of(row, 1, Kind::ends_at_once);
     }
@@ -277,7 +261,7 @@ impl Tracker {
         let best = self.best();
         let mut ended: Vec<Hypothesis> = Vec::new();
         for hypothesis in &self.bank {
-            if hypothesis.log_weight() > best - PLAUSIBLE {
+            if hypothesis.log_weight() > best - NEGLIGIBLE {
                 ended.extend(hypothesis.endings(&begin, step, &is_meant));
             }
         }
