@@ -26,7 +26,7 @@ pub(super) const NEGLIGIBLE: f64 = 7.0;
 pub(super) const GIVEN_UP: f64 = 12.0;
 /// The same for the likeliest that supposes fewer events than the lead, passing ones apart. What
 /// a storm on one course feigns shows at the next turn.
-pub(super) const RIVAL_GIVEN_UP: f64 = 40.0;
+pub(super) const SIMPLER_GIVEN_UP: f64 = 40.0;
 /// Log weight by which an account has become better than before.
 pub(super) const BETTER: f64 = 1.0;
 /// Accounts beside the lead under which an event is supposed, too.

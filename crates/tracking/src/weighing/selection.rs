@@ -1,8 +1,8 @@
 //! Selection of hypotheses: the lead, those that are dropped, and those that are merged.
 
 use super::limits::{
-    BETTER, DAY_ROWS, GIVEN_UP, HOUR_ROWS, IMPROBABLE, MOST_HYPOTHESES, OUTDATED_S, RIVAL_GIVEN_UP,
-    SAME_S, SETTLED_S, WEEK_ROWS,
+    BETTER, DAY_ROWS, GIVEN_UP, HOUR_ROWS, IMPROBABLE, MOST_HYPOTHESES, OUTDATED_S, SAME_S,
+    SETTLED_S, SIMPLER_GIVEN_UP, WEEK_ROWS,
 };
 use super::tracker::Tracker;
 use crate::hypotheses::hypothesis::{Hypothesis, Supposed};
@@ -70,18 +70,18 @@ impl Tracker {
         let lead = bank.remove(0);
         bank.sort_by(|a, b| b.log_weight().total_cmp(&a.log_weight()));
         kept.push(lead);
-        let mut has_rival = false;
+        let mut has_simpler = false;
         for hypothesis in bank {
-            let is_rival = changes(&hypothesis) < changes(&kept[0]);
-            let given_up = if is_rival && !has_rival {
-                RIVAL_GIVEN_UP
+            let is_simpler = changes(&hypothesis) < changes(&kept[0]);
+            let given_up = if is_simpler && !has_simpler {
+                SIMPLER_GIVEN_UP
             } else {
                 GIVEN_UP
             };
             if hypothesis.log_weight() < best - given_up || kept.len() >= MOST_HYPOTHESES {
                 continue;
             }
-            has_rival |= is_rival;
+            has_simpler |= is_simpler;
             let twin = kept
                 .iter()
                 .position(|other| is_same(other, &hypothesis, merges));
