@@ -24,8 +24,8 @@ pub(super) const CERTAIN: f64 = 3.0;
 pub(super) const NEGLIGIBLE: f64 = 7.0;
 /// Log weight below the best's at which an account is given up.
 pub(super) const GIVEN_UP: f64 = 12.0;
-/// The same for the likeliest that supposes fewer events than the lead, passing ones apart. What
-/// a storm on one course feigns shows at the next turn.
+/// Such a log weight for the likeliest account that supposes fewer events than the lead, passing
+/// ones apart: on one course a storm can feign a strike, until the next turn.
 pub(super) const SIMPLER_GIVEN_UP: f64 = 40.0;
 /// Log weight by which an account has become better than before.
 pub(super) const BETTER: f64 = 1.0;
