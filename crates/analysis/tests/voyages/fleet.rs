@@ -253,8 +253,7 @@ impl Sailing<'_> {
                 CompassHeading::new(0.0).unwrap(),
             )
         };
-        self.kept
-            .take(at, passage.course, read, met.gyro_off_deg, &self.sizes, rng);
+        self.kept.take(at, read, met.gyro_off_deg, &self.sizes, rng);
     }
 
     fn log(mut self) -> Log {

@@ -24,7 +24,6 @@ impl Kept {
     pub(super) fn take(
         &mut self,
         at: Sample,
-        course: f64,
         read: [f64; 3],
         gyro_off: f64,
         faults: &Faults,
@@ -39,7 +38,7 @@ impl Kept {
         };
         self.minutes
             .push(sample([read[0], read[1] + gyro_off, read[2]], at.windows));
-        let Some([compass, gyro, satellite]) = self.mean.add(course, read) else {
+        let Some([compass, gyro, satellite]) = self.mean.add(read) else {
             return;
         };
         let mut wild = [0.0; 2];

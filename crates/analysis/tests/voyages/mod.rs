@@ -247,7 +247,7 @@ pub(crate) fn sail_on(
         let time = start.plus_seconds(60.0 * minute as f64);
         let (variation, h_nt, z_nt) = earth(passage.lat, passage.lon, time);
         let read = errors.read(&truth, &passage, minute, (variation, h_nt, z_nt), &mut rng);
-        let Some([mut compass, mut gyro, satellite]) = mean.add(passage.course, read) else {
+        let Some([mut compass, mut gyro, satellite]) = mean.add(read) else {
             continue;
         };
         if rng.random::<f64>() < faults.outliers {
@@ -316,19 +316,24 @@ impl Truth {
 #[derive(Default)]
 struct Mean {
     count: u32,
+    /// First reading, and the mean of the others' distance from it: a compass may point astern.
+    first: [f64; 3],
     off: [f64; 3],
 }
 
 impl Mean {
-    fn add(&mut self, course: f64, read: [f64; 3]) -> Option<[f64; 3]> {
+    fn add(&mut self, read: [f64; 3]) -> Option<[f64; 3]> {
+        if self.count == 0 {
+            self.first = read;
+        }
         self.count += 1;
-        for (sum, reading) in self.off.iter_mut().zip(read) {
-            *sum += wrap_180(reading - course) / 10.0;
+        for ((sum, reading), first) in self.off.iter_mut().zip(read).zip(self.first) {
+            *sum += wrap_180(reading - first) / 10.0;
         }
         if self.count < 10 {
             return None;
         }
-        let mean = self.off.map(|off| course + off);
+        let mean = std::array::from_fn(|i| self.first[i] + self.off[i]);
         *self = Mean::default();
         Some(mean)
     }
