@@ -1,7 +1,8 @@
 //! Reads the fields of one sentence from left to right.
 //!
 //! An empty field, and one that the sentence ends before, is `None`. Anything
-//! else is either wholly understood or refused by name.
+//! else is either wholly understood or refused by name, but for fields on which
+//! no other depends: these are `None` where they are not understood.
 
 use crate::rejected::Rejected;
 use crate::sentence::{Kind, Position};
@@ -87,22 +88,37 @@ impl<'a> Fields<'a> {
 
     /// A magnitude of 0 to 180 degrees followed by E or W, east positive.
     ///
-    /// A value without a side is refused. A side without a value counts as
-    /// empty.
-    pub(crate) fn east_west(&mut self, field: &'static str) -> Result<Option<f64>, Rejected> {
-        let value = self.magnitude(field)?;
-        let side = self.text();
-        match (value, side) {
-            (None, b"" | b"E" | b"W") => Ok(None),
-            (Some(value), b"E" | b"W") if value <= 180.0 => {
-                Ok(Some(if side == b"W" && value > 0.0 {
-                    -value
-                } else {
-                    value
-                }))
-            }
-            _ => Err(self.bad(field)),
+    /// `None` where value and side are not understood: no reading depends on the deviation and
+    /// variation that its instrument assumes.
+    pub(crate) fn east_west(&mut self) -> Option<f64> {
+        let (value, side) = (self.text(), self.text());
+        signed(value, side)
+    }
+
+    /// The variation, and whether the positioning mode is a fix by satellites.
+    ///
+    /// Some transponders write an empty variation without its letter, so that the mode stands in
+    /// its place.
+    pub(crate) fn variation_and_mode(&mut self) -> Result<(Option<f64>, bool), Rejected> {
+        let (value, side) = (self.text(), self.text());
+        if value.is_empty() && self.is_done() && !matches!(side, b"E" | b"W") {
+            return Ok((None, self.is_a_fix(side)?));
         }
+        Ok((signed(value, side), self.mode_is_a_fix()?))
+    }
+
+    /// A number of metres and its unit; `None` where they are not understood.
+    pub(crate) fn metres(&mut self) -> Option<f64> {
+        let value = self.number("metres").ok().flatten();
+        let unit = self.text();
+        value.filter(|_| unit == b"M")
+    }
+
+    /// A course from magnetic north and its letter; `None` where they are not understood.
+    pub(crate) fn magnetic_course(&mut self) -> Option<f64> {
+        let course = self.direction("magnetic course").ok().flatten();
+        let letter = self.text();
+        course.filter(|_| letter == b"M")
     }
 
     /// A unit or reference letter that must stand after a given value.
@@ -140,7 +156,12 @@ impl<'a> Fields<'a> {
     /// True when the positioning mode is a fix by satellites. Older
     /// sentences have no such field.
     pub(crate) fn mode_is_a_fix(&mut self) -> Result<bool, Rejected> {
-        match self.text() {
+        let mode = self.text();
+        self.is_a_fix(mode)
+    }
+
+    fn is_a_fix(&self, mode: &[u8]) -> Result<bool, Rejected> {
+        match mode {
             b"" | b"A" | b"D" | b"F" | b"P" | b"R" => Ok(true),
             b"E" | b"M" | b"N" | b"S" => Ok(false),
             _ => Err(self.bad("mode")),
@@ -198,6 +219,18 @@ impl<'a> Fields<'a> {
                 lon_deg_east
             },
         }))
+    }
+}
+
+/// An angle of 0 to 180 degrees with its side, east positive.
+fn signed(value: &[u8], side: &[u8]) -> Option<f64> {
+    let degrees = decimal(value, DECIMALS)? as f64 / 1e6;
+    match side {
+        b"E" | b"W" if !(0.0..=180.0).contains(&degrees) => None,
+        b"E" => Some(degrees),
+        b"W" if degrees > 0.0 => Some(-degrees),
+        b"W" => Some(degrees),
+        _ => None,
     }
 }
 

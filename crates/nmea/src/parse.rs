@@ -82,8 +82,8 @@ fn data(kind: Kind, mut fields: Fields<'_>) -> Result<Data, Rejected> {
 fn hdg(fields: &mut Fields<'_>) -> Result<Hdg, Rejected> {
     Ok(Hdg {
         reading_deg: fields.direction("reading")?,
-        deviation_deg_east: fields.east_west("deviation")?,
-        variation_deg_east: fields.east_west("variation")?,
+        deviation_deg_east: fields.east_west(),
+        variation_deg_east: fields.east_west(),
     })
 }
 
@@ -137,15 +137,17 @@ fn rmc(fields: &mut Fields<'_>) -> Result<Option<Rmc>, Rejected> {
     if !fields.status()? {
         return Ok(None);
     }
-    let rmc = Rmc {
+    let mut rmc = Rmc {
         time,
         position: fields.position()?,
         sog_kn: fields.magnitude("speed")?,
         cog_deg_true: fields.direction("course")?,
         date: fields.short_date()?,
-        variation_deg_east: fields.east_west("variation")?,
+        variation_deg_east: None,
     };
-    Ok(fields.mode_is_a_fix()?.then_some(rmc))
+    let (variation_deg_east, is_a_fix) = fields.variation_and_mode()?;
+    rmc.variation_deg_east = variation_deg_east;
+    Ok(is_a_fix.then_some(rmc))
 }
 
 fn gga(fields: &mut Fields<'_>) -> Result<Option<Gga>, Rejected> {
@@ -156,17 +158,16 @@ fn gga(fields: &mut Fields<'_>) -> Result<Option<Gga>, Rejected> {
         Some(quality @ 1..=5) => quality as u8,
         _ => return Ok(None),
     };
-    let satellites = fields.integer("satellites", 255)?.map(|count| count as u8);
-    let hdop = fields.magnitude("dilution")?;
-    let altitude_m = fields.number("altitude")?;
-    fields.letter_after(altitude_m, b'M', "altitude unit")?;
-    let geoid_separation_m = fields.number("geoid separation")?;
-    fields.letter_after(geoid_separation_m, b'M', "geoid separation unit")?;
+    // The fix does not depend on the following, which may be in any state.
+    let satellites = fields.integer("satellites", 255).ok().flatten();
+    let hdop = fields.magnitude("dilution").ok().flatten();
+    let altitude_m = fields.metres();
+    let geoid_separation_m = fields.metres();
     Ok(Some(Gga {
         time,
         position,
         quality,
-        satellites,
+        satellites: satellites.map(|count| count as u8),
         hdop,
         altitude_m,
         geoid_separation_m,
@@ -197,8 +198,7 @@ fn zda(fields: &mut Fields<'_>) -> Result<Zda, Rejected> {
 fn vtg(fields: &mut Fields<'_>) -> Result<Option<Vtg>, Rejected> {
     let cog_deg_true = fields.direction("true course")?;
     fields.letter_after(cog_deg_true, b'T', "true reference")?;
-    let cog_deg_magnetic = fields.direction("magnetic course")?;
-    fields.letter_after(cog_deg_magnetic, b'M', "magnetic reference")?;
+    let cog_deg_magnetic = fields.magnetic_course();
     let sog_kn = fields.magnitude("speed")?;
     fields.letter_after(sog_kn, b'N', "speed unit")?;
     // The speed repeated in kilometres an hour.

@@ -284,15 +284,53 @@ fn the_heartbeat_is_read() {
 }
 
 #[test]
+fn a_field_that_nothing_depends_on_spoils_no_sentence() {
+    for tail in [
+        "3.0,,,",
+        "-3.0,E,,",
+        "3.0,N,,",
+        ",,180.1,W",
+        "x,E,y,W",
+        "3.0,,2.0",
+    ] {
+        let hdg = data(&format!("HCHDG,10,{tail}"));
+        assert_eq!(hdg, data("HCHDG,10,,,,"), "{tail}");
+    }
+    let Data::Hdg(hdg) = data("HCHDG,10,3.0,,2.0,W") else {
+        panic!()
+    };
+    assert_eq!(hdg.variation_deg_east, Some(-2.0));
+    for tail in ["99999,x,x,x,x,x", "08,0.9,5.4,F,46.9,F", "-1,-1,5.4,,,"] {
+        let gga = data(&format!("GPGGA,120000,4330.0,N,00515.0,E,1,{tail}"));
+        assert!(
+            matches!(gga, Data::Gga(Some(gga)) if gga.position.is_some()),
+            "{tail}"
+        );
+    }
+    let vtg = data("GPVTG,90.0,T,400.0,T,5.0,N,9.3,K,A");
+    assert_eq!(vtg, data("GPVTG,90.0,T,,M,5.0,N,9.3,K,A"));
+}
+
+#[test]
+fn a_variation_without_its_letter_costs_no_position() {
+    let start = "GPRMC,120000,A,4330.0,N,00515.0,E,5.0,90.0,010126";
+    let whole = data(&format!("{start},,,A"));
+    assert!(matches!(whole, Data::Rmc(Some(rmc)) if rmc.position.is_some()));
+    for tail in [",,A", ",,D", ",", ",,", "", ",3.0,,A", ",x,E,A"] {
+        assert_eq!(data(&format!("{start}{tail}")), whole, "{tail}");
+    }
+    // The mode in the place of the letter is heeded all the same.
+    for tail in [",,N", ",,S", ",3.0,,N"] {
+        assert_eq!(data(&format!("{start}{tail}")), Data::Rmc(None), "{tail}");
+    }
+}
+
+#[test]
 fn a_wrong_field_is_refused_by_name() {
     for (body, field) in [
         ("HCHDG,361,,,,", "reading"),
         ("HCHDG,-1,,,,", "reading"),
         ("HCHDG,nan,,,,", "reading"),
-        ("HCHDG,10,3.0,,,", "deviation"),
-        ("HCHDG,10,-3.0,E,,", "deviation"),
-        ("HCHDG,10,3.0,N,,", "deviation"),
-        ("HCHDG,10,,,180.1,W", "variation"),
         ("HCHDM,10,T", "reference"),
         ("HEHDT,10,M", "reference"),
         ("HEHDT,10", "reference"),
@@ -311,6 +349,10 @@ fn a_wrong_field_is_refused_by_name() {
         ("GPRMC,120000,A,-430.0,N,00515.0,E,,,,,", "latitude"),
         ("GPRMC,120000,A,,,,,-1,,,,", "speed"),
         ("GPRMC,120000,A,,,,,,,310226,,", "date"),
+        (
+            "GPRMC,120000,A,4330.0,N,00515.0,E,5.0,90.0,010126,,X",
+            "mode",
+        ),
         ("GPZDA,120000,31,02,2026,,", "date"),
         ("GPGGA,120000,,,,,9,,,,,,,,", "quality"),
         ("IIXDR,A,x,D,ROLL", "roll"),
