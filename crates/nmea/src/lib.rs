@@ -25,6 +25,7 @@
 
 pub mod datagram;
 pub mod lines;
+pub mod n2k;
 pub mod rejected;
 pub mod sentence;
 pub mod tag;
