@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
-use binnacle_analysis::fit::{HeadingPair, check_independence};
+use binnacle_analysis::fit::{HeadingPair, check_independence, weigh_independence};
 use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation};
 use binnacle_compass::position::Position;
 use binnacle_compass::result::FitError;
@@ -255,4 +255,26 @@ fn few_pairs_or_few_headings_are_not_refused() {
     };
     let one = pairs(1, &steady, &still, |m| rounded(m.true_deg, 1.0));
     assert!(check_independence(&one).is_ok());
+}
+
+#[test]
+fn a_gyro_beside_a_restless_compass_on_a_steady_course_is_independent() {
+    for seed in 0..20 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let start = Timestamp::parse("2026-03-01T00:00:00Z").unwrap();
+        let course = 360.0 * rng.random::<f64>();
+        // The true heading does not move at all, so that any noise lies on a line.
+        let pairs: Vec<HeadingPair> = (0..80)
+            .map(|second| HeadingPair {
+                time: Some(start.plus_seconds(f64::from(second))),
+                position: Some(Position::new(20.0, -30.0).unwrap()),
+                compass: CompassHeading::new(course - 3.0 + 0.15 * gauss(&mut rng)).unwrap(),
+                reference: TrueHeading::new(course).unwrap(),
+                variation: Variation::new(2.0).unwrap(),
+                sog_kn: None,
+            })
+            .collect();
+        let evidence = weigh_independence(&pairs).unwrap();
+        assert!(evidence.favours_independence(), "{seed}: {evidence:?}");
+    }
 }

@@ -22,5 +22,7 @@ pub use paper::fit_paper;
 pub use reference::{HeadingReading, ObservedReadings, compare_references, observe_readings};
 pub use residual_check::check_residuals;
 pub use robust::{REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, fit_robust};
-pub use shared_noise::{HeadingPair, check_independence, check_readings_independence};
+pub use shared_noise::{
+    HeadingPair, SharedNoise, check_independence, check_readings_independence, weigh_independence,
+};
 pub use time_outliers::long_gap;

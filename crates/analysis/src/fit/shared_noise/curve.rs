@@ -29,6 +29,9 @@ pub(super) struct Residuals {
     pub(super) none_deg: f64,
     /// Number of unknowns of the curve.
     pub(super) unknowns: usize,
+    /// Mean slope of the curve at the pairs, degrees a degree: on a steady course any noise of
+    /// the compass lies on a line of slope −1.
+    pub(super) slope: f64,
 }
 
 /// Returns the residuals of the chosen pairs about the curve of least absolute residuals;
@@ -66,7 +69,20 @@ pub(super) fn residuals(sorted: &[HeadingPair], chosen: &[usize]) -> Option<Resi
         differences_deg: rows.iter().map(|(_, d)| d - middle).collect(),
         none_deg: -middle,
         unknowns: UNKNOWNS,
+        slope: mean_slope(sorted, chosen, &solution),
     })
+}
+
+/// Returns the mean slope of a curve at the chosen pairs, degrees a degree.
+fn mean_slope(sorted: &[HeadingPair], chosen: &[usize], solution: &Columns) -> f64 {
+    let slopes = chosen.iter().map(|&i| {
+        let (sin, cos) = sorted[i].compass.radians().sin_cos();
+        let (sin_2, cos_2) = (2.0 * sorted[i].compass.radians()).sin_cos();
+        let slope = solution[1] * cos - solution[2] * sin
+            + 2.0 * (solution[3] * cos_2 - solution[4] * sin_2);
+        slope.to_radians()
+    });
+    slopes.sum::<f64>() / chosen.len() as f64
 }
 
 /// Returns the columns of a pair, each of the size of one at most where possible.

@@ -39,6 +39,9 @@ const NEGLIGIBLE_SD: f64 = 6.0;
 const CONSTANTS: usize = 3;
 /// Share of the differences at either end that may be wild.
 const TRIMMED_SHARE: f64 = 0.005;
+/// Steepest mean slope of a card by which a copy was corrected, degrees a degree: that of a
+/// compass of 28° semicircular deviation on its steepest headings.
+const STEEPEST_CARD: f64 = 0.5;
 /// Steps of a table of densities in a standard deviation.
 const STEPS_PER_SD: f64 = 8.0;
 
@@ -63,7 +66,8 @@ pub(super) fn weigh(residuals: &Residuals, digits: Digits) -> Evidence {
         Roundings::of(coarser, 0.0),
         Roundings::of(compass_deg, reference_deg),
     ];
-    let corrected = ways.iter().map(|way| {
+    let is_card = residuals.slope.abs() <= STEEPEST_CARD;
+    let corrected = ways.iter().filter(|_| is_card).map(|way| {
         // The curve follows the rounding errors by so much.
         let curve = way.variance() * residuals.unknowns as f64 / count;
         way.mean_log_density(&residuals.degrees, (COPY_DEG * COPY_DEG + curve).sqrt())

@@ -59,6 +59,47 @@ pub fn check_readings_independence(readings: &[HeadingReading]) -> Result<(), Fi
 /// # Errors
 /// [`FitError::ReferenceIsCompass`].
 pub fn check_independence(pairs: &[HeadingPair]) -> Result<(), FitError> {
+    let Some(evidence) = weigh_independence(pairs).filter(SharedNoise::is_shared) else {
+        return Ok(());
+    };
+    Err(FitError::ReferenceIsCompass {
+        samples: pairs.len() as u64,
+        scatter_deg: evidence.scatter_deg,
+        least_deg: evidence.least_deg,
+    })
+}
+
+/// Evidence that compass and reference share their noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SharedNoise {
+    /// Log-likelihood ratio of shared to independent noise.
+    pub log_ratio: f64,
+    /// Scatter of the differences about the curve, degrees.
+    pub scatter_deg: f64,
+    /// Least scatter of independent instruments with these digits, degrees.
+    pub least_deg: f64,
+}
+
+impl SharedNoise {
+    /// Returns whether the noise is shared: of ten thousand independent references one is.
+    pub fn is_shared(&self) -> bool {
+        self.log_ratio > THRESHOLD
+    }
+
+    /// Returns whether the noise is independent, as certainly as that.
+    pub fn is_independent(&self) -> bool {
+        self.log_ratio < -THRESHOLD
+    }
+
+    /// Returns whether the readings are more like those of independent instruments than not.
+    pub fn favours_independence(&self) -> bool {
+        self.log_ratio < 0.0
+    }
+}
+
+/// Weighs shared against independent noise, by pairs of compass and reference in any order;
+/// none where there are too few of them.
+pub fn weigh_independence(pairs: &[HeadingPair]) -> Option<SharedNoise> {
     let mut sorted = pairs.to_vec();
     sorted.sort_by(|a, b| (a.time.cmp(&b.time)).then(a.compass_deg().total_cmp(&b.compass_deg())));
     let digits_of = |reading: fn(&HeadingPair) -> f64| {
@@ -73,11 +114,9 @@ pub fn check_independence(pairs: &[HeadingPair]) -> Result<(), FitError> {
     };
     let chosen = turned_pairs(&sorted, digits.compass_deg.max(LEAST_TURN_DEG));
     if chosen.len() < NEEDED_PAIRS {
-        return Ok(());
+        return None;
     }
-    let Some(residuals) = residuals(&sorted, &chosen) else {
-        return Ok(());
-    };
+    let residuals = residuals(&sorted, &chosen)?;
     let sectors: BTreeSet<i64> = chosen
         .iter()
         .map(|&i| (sorted[i].compass_deg() / SECTOR_DEG) as i64)
@@ -86,11 +125,8 @@ pub fn check_independence(pairs: &[HeadingPair]) -> Result<(), FitError> {
         log_ratio_per_pair,
         scatter_deg,
     } = weigh(&residuals, digits);
-    if log_ratio_per_pair * sectors.len() as f64 <= THRESHOLD {
-        return Ok(());
-    }
-    Err(FitError::ReferenceIsCompass {
-        samples: pairs.len() as u64,
+    Some(SharedNoise {
+        log_ratio: log_ratio_per_pair * sectors.len() as f64,
         scatter_deg,
         least_deg: likelihood::least_scatter_deg(digits),
     })
