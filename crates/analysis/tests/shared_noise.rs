@@ -263,18 +263,24 @@ fn a_gyro_beside_a_restless_compass_on_a_steady_course_is_independent() {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let start = Timestamp::parse("2026-03-01T00:00:00Z").unwrap();
         let course = 360.0 * rng.random::<f64>();
-        // The true heading does not move at all, so that any noise lies on a line.
-        let pairs: Vec<HeadingPair> = (0..80)
-            .map(|second| HeadingPair {
-                time: Some(start.plus_seconds(f64::from(second))),
-                position: Some(Position::new(20.0, -30.0).unwrap()),
-                compass: CompassHeading::new(course - 3.0 + 0.15 * gauss(&mut rng)).unwrap(),
-                reference: TrueHeading::new(course).unwrap(),
-                variation: Variation::new(2.0).unwrap(),
-                sog_kn: None,
-            })
-            .collect();
-        let evidence = weigh_independence(&pairs).unwrap();
-        assert!(evidence.favours_independence(), "{seed}: {evidence:?}");
+        for kept in [0.0, 0.5, 0.9] {
+            let mut noise_deg = 0.0;
+            // The true heading does not move at all, so that any noise lies on a line.
+            let pairs: Vec<HeadingPair> = (0..80)
+                .map(|row| {
+                    noise_deg = kept * noise_deg + 0.12 * gauss(&mut rng);
+                    HeadingPair {
+                        time: Some(start.plus_seconds(10.0 * f64::from(row))),
+                        position: Some(Position::new(20.0, -30.0).unwrap()),
+                        compass: CompassHeading::new(course - 3.0 + noise_deg).unwrap(),
+                        reference: TrueHeading::new(course).unwrap(),
+                        variation: Variation::new(2.0).unwrap(),
+                        sog_kn: None,
+                    }
+                })
+                .collect();
+            let evidence = weigh_independence(&pairs).unwrap();
+            assert!(evidence.favours_independence(), "{seed}: {evidence:?}");
+        }
     }
 }

@@ -13,8 +13,10 @@ pub(super) struct Digits {
 /// Comparison of the two explanations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Evidence {
-    /// Mean log-likelihood of shared less independent noise of a pair.
-    pub(super) log_ratio_per_pair: f64,
+    /// Mean log-likelihood of a pair by shared noise.
+    pub(super) shared: f64,
+    /// Mean log-likelihood of a pair by independent noise.
+    pub(super) independent: f64,
     /// Scatter of the differences about the curve, degrees.
     pub(super) scatter_deg: f64,
 }
@@ -92,7 +94,8 @@ pub(super) fn weigh(residuals: &Residuals, digits: Digits) -> Evidence {
     let choices = ways.len() as f64 * (CONSTANTS + 1) as f64;
     let scatters = without_curve.iter().chain([&residuals.degrees]);
     Evidence {
-        log_ratio_per_pair: shared - choices.ln() / count - independent,
+        shared: shared - choices.ln() / count,
+        independent,
         scatter_deg: scatters
             .map(|off| root_mean_square(off))
             .fold(f64::INFINITY, f64::min),

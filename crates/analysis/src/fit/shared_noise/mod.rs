@@ -72,8 +72,12 @@ pub fn check_independence(pairs: &[HeadingPair]) -> Result<(), FitError> {
 /// Evidence that compass and reference share their noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SharedNoise {
-    /// Log-likelihood ratio of shared to independent noise.
-    pub log_ratio: f64,
+    /// Mean log-likelihood of a pair if the noise is shared.
+    shared: f64,
+    /// Mean log-likelihood of a pair if it is independent.
+    independent: f64,
+    /// Number of degrees of heading with pairs, each of which counts as one observation.
+    sectors: f64,
     /// Scatter of the differences about the curve, degrees.
     pub scatter_deg: f64,
     /// Least scatter of independent instruments with these digits, degrees.
@@ -81,19 +85,34 @@ pub struct SharedNoise {
 }
 
 impl SharedNoise {
+    /// Returns the log-likelihood ratio of shared to independent noise.
+    pub fn log_ratio(&self) -> f64 {
+        (self.shared - self.independent) * self.sectors
+    }
+
+    /// Returns the evidence where each shared reading was chosen among some of the compass, and
+    /// `latest` has the pairs with the latest one. The choice costs its logarithm.
+    #[must_use]
+    pub fn of_choice(self, latest: SharedNoise, mean_log_choices: f64) -> SharedNoise {
+        SharedNoise {
+            shared: (self.shared - mean_log_choices).max(latest.shared),
+            ..latest
+        }
+    }
+
     /// Returns whether the noise is shared: of ten thousand independent references one is.
     pub fn is_shared(&self) -> bool {
-        self.log_ratio > THRESHOLD
+        self.log_ratio() > THRESHOLD
     }
 
     /// Returns whether the noise is independent, as certainly as that.
     pub fn is_independent(&self) -> bool {
-        self.log_ratio < -THRESHOLD
+        self.log_ratio() < -THRESHOLD
     }
 
     /// Returns whether the readings are more like those of independent instruments than not.
     pub fn favours_independence(&self) -> bool {
-        self.log_ratio < 0.0
+        self.log_ratio() < 0.0
     }
 }
 
@@ -122,11 +141,14 @@ pub fn weigh_independence(pairs: &[HeadingPair]) -> Option<SharedNoise> {
         .map(|&i| (sorted[i].compass_deg() / SECTOR_DEG) as i64)
         .collect();
     let Evidence {
-        log_ratio_per_pair,
+        shared,
+        independent,
         scatter_deg,
     } = weigh(&residuals, digits);
     Some(SharedNoise {
-        log_ratio: log_ratio_per_pair * sectors.len() as f64,
+        shared,
+        independent,
+        sectors: sectors.len() as f64,
         scatter_deg,
         least_deg: likelihood::least_scatter_deg(digits),
     })
