@@ -1,19 +1,32 @@
 //! Data acquisition: from observations through roles and sampler to samples, with the latest
 //! readings.
 
-use crate::config::RolesConfig;
+use crate::config::{RolesConfig, SilenceConfig};
 use crate::instruments::{
-    ClockCheckpoint, Observation, Reading, Readings, Roles, is_recorded_time,
+    AGENT_TALKER, ClockCheckpoint, HeardSources, Independence, Observation, OwnOutput, Reading,
+    Readings, Roles, SentHeading, SourceReport, StatedClocks, is_recorded_time,
 };
 use crate::sampler::{Exclusion, Sampler};
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::Settings;
+use std::time::Duration;
 use tokio::time::Instant;
+
+/// Time for which a source that is heard no more is still named as a problem.
+const NAMED_FOR: Duration = Duration::from_mins(1);
 
 /// Roles, sampler and latest readings of one vessel.
 #[derive(Debug)]
 pub(crate) struct Acquisition {
     roles: Roles,
+    clocks: StatedClocks,
+    own_output: OwnOutput,
+    independence: Independence,
+    /// Every source that is heard.
+    pub(crate) heard: HeardSources,
+    /// Set for recordings: their sources have the rates of the recorded time.
+    is_recorded: bool,
+    start: Instant,
     /// Sampler fed with the signals of the instruments.
     pub(crate) sampler: Sampler,
     /// Latest readings of the instruments.
@@ -24,12 +37,18 @@ impl Acquisition {
     /// Creates an acquisition without any observation.
     pub(crate) fn new(
         roles: &RolesConfig,
-        stale_s: f64,
+        silence: &SilenceConfig,
         settings: Settings,
         exclusion: Option<Exclusion>,
     ) -> Acquisition {
         Acquisition {
-            roles: Roles::new(roles, stale_s),
+            roles: Roles::new(roles, silence),
+            clocks: StatedClocks::default(),
+            own_output: OwnOutput::new(vec![AGENT_TALKER]),
+            independence: Independence::default(),
+            heard: HeardSources::default(),
+            is_recorded: false,
+            start: Instant::now(),
             sampler: Sampler::new(settings, exclusion),
             readings: Readings::default(),
         }
@@ -66,6 +85,42 @@ impl Acquisition {
         self.roles.clock().correct_reference(time, now);
     }
 
+    /// Gives sources the rates of the recorded time.
+    pub(crate) fn set_recorded(&mut self) {
+        self.is_recorded = true;
+    }
+
+    /// Records a heading as it is sent to the bridge.
+    pub(crate) fn note_sent(&mut self, heading: SentHeading, now: Instant) {
+        self.own_output.note_sent(heading, now);
+    }
+
+    /// Describes sources that must not be used as they are configured.
+    pub(crate) fn source_problems(&self, now: Instant) -> Vec<String> {
+        let mut problems = self.roles.problems(now, NAMED_FOR);
+        problems.extend(self.independence.problems());
+        let repeaters = self.own_output.repeaters();
+        problems.extend(
+            repeaters
+                .map(|source| format!("{source} repeats the agent's own output, and is not used")),
+        );
+        problems
+    }
+
+    /// Returns every source that is heard, with the roles that it serves.
+    pub(crate) fn sources(&self, now: Instant) -> Vec<SourceReport> {
+        let sources = self.heard.sorted().into_iter();
+        let reports = sources.map(|(source, heard)| {
+            let mut uses = Vec::new();
+            for seen in &heard.values {
+                let new = self.roles.uses(seen).into_iter();
+                uses.extend(new.filter(|used| !uses.contains(used)).collect::<Vec<_>>());
+            }
+            heard.report(source, &uses, now)
+        });
+        reports.collect()
+    }
+
     /// Applies an observation received at `heard`.
     pub(crate) fn observe(&mut self, seen: &Observation, heard: Instant) {
         self.roles.clock().set_receive_time(heard);
@@ -75,15 +130,46 @@ impl Acquisition {
             self.observe_recorded_time(at);
             return;
         }
-        for signal in self.roles.observe(seen).into_iter().flatten() {
-            self.sampler.apply(signal);
-            self.readings.apply(signal, heard);
+        if let Reading::Greeting(at) = seen.reading {
+            self.clocks.note_greeting(&seen.source.input, at, heard);
+            return;
+        }
+        let age = self.clocks.age(&seen.source, seen.stated, heard);
+        let is_echo = self.own_output.is_echo(seen, heard);
+        let seconds = self.seconds(heard);
+        if let Some(source) = self.heard.note(seen, heard, age, seconds) {
+            source.mark_own_output(is_echo);
+        }
+        let Some(age) = age.filter(|_| !is_echo) else {
+            return;
+        };
+        let Some(measured) = heard.checked_sub(age) else {
+            return;
+        };
+        for signal in self
+            .roles
+            .observe(seen, measured, age)
+            .into_iter()
+            .flatten()
+        {
+            let refused = self.independence.observe(signal);
+            self.sampler.apply(refused.unwrap_or(signal));
+            self.readings.apply(signal, measured);
+        }
+    }
+
+    /// Returns the time from which rates follow.
+    fn seconds(&self, heard: Instant) -> f64 {
+        match self.roles.now().filter(|_| self.is_recorded) {
+            Some(time) => time.micros() as f64 / 1e6,
+            None => heard.saturating_duration_since(self.start).as_secs_f64(),
         }
     }
 
     /// Applies the time stamp that a recording gives a line.
     fn observe_recorded_time(&mut self, stamp: Timestamp) {
         if let Some(signal) = self.roles.observe_recorded_time(stamp) {
+            self.independence.observe(signal);
             self.sampler.apply(signal);
         }
     }
@@ -92,19 +178,20 @@ impl Acquisition {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::instruments::Source;
+
+    fn silence() -> SilenceConfig {
+        SilenceConfig::default()
+    }
 
     #[test]
     fn the_time_of_a_recording_ranks_behind_the_receivers() {
         let mut acquisition =
-            Acquisition::new(&RolesConfig::usual(), 15.0, Settings::default(), None);
+            Acquisition::new(&RolesConfig::usual(), &silence(), Settings::default(), None);
         let at = |text| Timestamp::parse(text).unwrap();
         let mut say = |talker, sentence, time| {
-            let seen = Observation {
-                input: "log".into(),
-                talker,
-                sentence,
-                reading: Reading::Time(at(time)),
-            };
+            let source = Source::of_sentence("log".into(), talker, sentence);
+            let seen = Observation::now(source, Reading::Time(at(time)));
             acquisition.observe(&seen, Instant::now());
             acquisition.time()
         };
@@ -123,14 +210,10 @@ mod tests {
             position: Vec::new(),
             ..RolesConfig::usual()
         };
-        let mut acquisition = Acquisition::new(&roles, 15.0, Settings::default(), None);
+        let mut acquisition = Acquisition::new(&roles, &silence(), Settings::default(), None);
         let at = Timestamp::parse("2026-01-02T13:00:01Z").unwrap();
-        let seen = Observation {
-            input: "log".into(),
-            talker: *b"--",
-            sentence: *b"LOG",
-            reading: Reading::Time(at),
-        };
+        let source = Source::of_sentence("log".into(), *b"--", *b"LOG");
+        let seen = Observation::now(source, Reading::Time(at));
         acquisition.observe(&seen, Instant::now());
         assert_eq!(acquisition.time(), Some(at));
     }

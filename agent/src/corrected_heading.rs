@@ -17,6 +17,8 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct CorrectionInputs<'a> {
     /// Raw compass heading, unless the compass is silent.
     pub(crate) compass: Option<CompassHeading>,
+    /// Set while two sensors that read differently send as the compass.
+    pub(crate) compass_is_mixed: bool,
     /// Position of the vessel, unless it is old.
     pub(crate) position: Option<Position>,
     /// GNSS time.
@@ -117,6 +119,9 @@ fn apply_model(
     if earth.h_nt < MIN_H_NT {
         return Err("the field is too weak for a magnetic compass".to_owned());
     }
+    if inputs.compass_is_mixed {
+        return Err("two sensors that read differently send as the compass".to_owned());
+    }
     let compass = inputs.compass.ok_or("the compass is silent")?;
     let model = inputs.model.ok_or("there is no model yet")?;
     // No heading is better than one from magnetism that the vessel no longer has.
@@ -209,6 +214,7 @@ pub(crate) mod tests {
     fn inputs(model: Option<&ModelDownlink>) -> CorrectionInputs<'_> {
         CorrectionInputs {
             compass: CompassHeading::new(90.0),
+            compass_is_mixed: false,
             position: Position::new(43.3, -3.0).ok(),
             time: Timestamp::parse("2026-11-21T07:00:00Z").ok(),
             model,

@@ -3,7 +3,7 @@
 //! Nothing is written before everything was read, so an existing table is complete.
 
 use crate::acquisition::Acquisition;
-use crate::config::RolesConfig;
+use crate::config::{RolesConfig, SilenceConfig};
 use crate::input;
 use crate::sampler::Tally;
 use anyhow::Context;
@@ -43,11 +43,11 @@ struct Report {
 pub(crate) fn replay(
     files: &[PathBuf],
     roles: &RolesConfig,
-    stale_s: f64,
+    silence: &SilenceConfig,
 ) -> anyhow::Result<Replayed> {
     let mut acquisition = Acquisition::new(
         &roles.without_input_names(),
-        stale_s,
+        silence,
         Settings::default(),
         None,
     );

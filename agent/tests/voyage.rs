@@ -80,7 +80,7 @@ async fn a_voyage_reaches_the_server_and_comes_back_as_a_heading() {
     for batch in server.decoded() {
         for sample in batch.samples {
             let lead = wrap_180(sample.gyro.unwrap().degrees() - sample.compass.degrees());
-            assert!((lead - LEAD_DEG).abs() < 0.06, "{sample:?}");
+            assert!((lead - LEAD_DEG).abs() < 0.2, "{sample:?}");
             let offset = sample.time.micros() / 1_000_000 - bridge::START_S;
             let heading = bridge::heading_deg(offset);
             assert!(wrap_180(sample.gyro.unwrap().degrees() - heading).abs() < 0.06);

@@ -42,7 +42,7 @@ pub(super) fn replay(
         None => (RolesConfig::usual(), SilenceConfig::default()),
     };
     let replayed =
-        replay::replay(files, &roles, silence.stale_s.0).map_err(|e| BadInput(format!("{e:#}")))?;
+        replay::replay(files, &roles, &silence).map_err(|e| BadInput(format!("{e:#}")))?;
     let table = replayed.csv()?;
     match csv {
         Some(path) => {

@@ -10,6 +10,7 @@ mod limits;
 mod output;
 mod profile;
 mod roles;
+mod silence;
 mod uplink;
 
 pub(crate) use alert::AlertConfig;
@@ -22,10 +23,13 @@ pub(crate) use output::{OutputConfig, SerialConfig};
 pub(crate) use profile::max_burst_batch_bytes;
 pub(crate) use profile::{ConnectionPolicy, Profile, UploadPlan};
 pub(crate) use roles::{RolesConfig, SourceConfig};
+pub(crate) use silence::SilenceConfig;
 pub(crate) use uplink::{ModemConfig, UplinkConfig};
 
 use error::Problem;
-use limits::{PositiveSeconds, RawLogLimit, SpoolLimit};
+#[cfg(test)]
+use limits::PositiveSeconds;
+use limits::{RawLogLimit, SpoolLimit};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
@@ -63,7 +67,7 @@ pub(crate) struct Config {
     /// Thresholds of the agent's own alert.
     #[serde(default)]
     pub(crate) alert: AlertConfig,
-    /// Time without readings after which a source counts as silent.
+    /// Age up to which readings serve.
     #[serde(default)]
     pub(crate) silence: SilenceConfig,
 }
@@ -74,22 +78,6 @@ pub(crate) struct Config {
 pub(crate) struct PageConfig {
     /// Address and port; port 0 takes a free one.
     pub(crate) listen: SocketAddr,
-}
-
-/// Time without readings after which a source counts as silent.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct SilenceConfig {
-    /// Seconds of GNSS time.
-    pub(crate) stale_s: PositiveSeconds,
-}
-
-impl Default for SilenceConfig {
-    fn default() -> SilenceConfig {
-        SilenceConfig {
-            stale_s: PositiveSeconds(15.0),
-        }
-    }
 }
 
 impl Config {
@@ -189,6 +177,7 @@ stale_s = 15
         assert_eq!(example.uplink.retry_min_s, bare.uplink.retry_min_s);
         assert_eq!(example.uplink.retry_max_s, bare.uplink.retry_max_s);
         assert_eq!(example.silence.stale_s, bare.silence.stale_s);
+        assert_eq!(example.silence.steering_s, bare.silence.steering_s);
         assert_eq!(example.output.interval_s, bare.output.interval_s);
         assert_eq!(example.output.alarm_sentence, bare.output.alarm_sentence);
         assert_eq!(example.alert.gyro_error_deg, bare.alert.gyro_error_deg);

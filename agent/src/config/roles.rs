@@ -1,6 +1,8 @@
 //! `[roles]`: sources of each instrument, best first.
 
+use binnacle_nmea::n2k::{Address, Name};
 use serde::{Deserialize, Deserializer};
+use std::net::IpAddr;
 use toml::Spanned;
 
 /// Ranked sources for each instrument.
@@ -42,6 +44,20 @@ pub(crate) struct SourceConfig {
     /// Sentence, three letters.
     #[serde(default, deserialize_with = "three_letters")]
     pub(crate) sentence: Option<[u8; 3]>,
+    /// Signal K: `$source` of the value.
+    #[serde(default, deserialize_with = "some_text")]
+    pub(crate) source: Option<String>,
+    /// System function, `s:` of the TAG block.
+    #[serde(default, deserialize_with = "some_text")]
+    pub(crate) sfi: Option<String>,
+    /// Address that datagrams come from.
+    pub(crate) sender: Option<IpAddr>,
+    /// Address on NMEA 2000.
+    #[serde(default, deserialize_with = "n2k_address")]
+    pub(crate) n2k_address: Option<Address>,
+    /// NAME on NMEA 2000.
+    #[serde(default, deserialize_with = "n2k_name")]
+    pub(crate) n2k_name: Option<Name>,
     /// HDM only: the heading has had no deviation applied.
     #[serde(default)]
     pub(crate) raw: bool,
@@ -53,6 +69,11 @@ impl SourceConfig {
             input: None,
             talker,
             sentence: Some(sentence),
+            source: None,
+            sfi: None,
+            sender: None,
+            n2k_address: None,
+            n2k_name: None,
             raw: false,
         }
     }
@@ -64,8 +85,18 @@ impl SourceConfig {
         let letters = |letters: &[u8]| String::from_utf8_lossy(letters).into_owned();
         let talker = self.talker.map(|talker| letters(&talker));
         let sentence = self.sentence.map(|sentence| letters(&sentence));
-        let parts: Vec<String> = [input, talker, sentence].into_iter().flatten().collect();
-        parts.join(" ")
+        // Keys that came later stand last, so that a source keeps its name.
+        let parts = [
+            input,
+            talker,
+            sentence,
+            self.source.clone(),
+            self.sfi.clone(),
+            self.sender.map(|sender| sender.to_string()),
+            self.n2k_address.map(|address| address.to_string()),
+            self.n2k_name.map(|name| name.to_string()),
+        ];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(" ")
     }
 
     /// Returns whether the talker matches.
@@ -173,6 +204,29 @@ fn letters<'de, const N: usize, D: Deserializer<'de>>(
             "{text:?} is not {wanted}"
         ))),
     }
+}
+
+fn some_text<'de, D: Deserializer<'de>>(d: D) -> Result<Option<String>, D::Error> {
+    let text = String::deserialize(d)?;
+    if text.is_empty() {
+        return Err(serde::de::Error::custom("\"\" names nothing"));
+    }
+    Ok(Some(text))
+}
+
+fn n2k_address<'de, D: Deserializer<'de>>(d: D) -> Result<Option<Address>, D::Error> {
+    let number = i64::deserialize(d)?;
+    let address = u8::try_from(number).ok().and_then(Address::new);
+    address.map(Some).ok_or_else(|| {
+        serde::de::Error::custom(format!("{number} is not an address from 0 to 251"))
+    })
+}
+
+fn n2k_name<'de, D: Deserializer<'de>>(d: D) -> Result<Option<Name>, D::Error> {
+    let text = String::deserialize(d)?;
+    Name::parse(&text).map(Some).ok_or_else(|| {
+        serde::de::Error::custom(format!("{text:?} is not a NAME of 16 hexadecimal digits"))
+    })
 }
 
 type Sources<E> = Result<Vec<SourceConfig>, E>;

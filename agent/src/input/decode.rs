@@ -1,16 +1,18 @@
 //! Decoding of bytes to observations: split into lines, parsed, counted.
 
 use super::readings::{readings, timestamp};
-use crate::instruments::{Observation, RECORDED_TIME, Reading};
+use crate::instruments::{Observation, RECORDED_TIME, Reading, Source as Origin};
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::lines::Line;
 use binnacle_nmea::{Lines, Rejected, Tally, datagram};
+use std::net::IpAddr;
 use std::sync::Arc;
 
 /// Kind of input, which decides what may precede a sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// Live instruments. A clock in a TAG block is some device's own and is ignored.
+    /// Live instruments. A clock in a TAG block is some device's own, and states when the sentence
+    /// was measured.
     Live,
     /// Recording: an RFC 3339 time and a space or tab, or the clock in a TAG block, gives the time
     /// at which a line was received.
@@ -29,6 +31,10 @@ struct Reader {
     input: Arc<str>,
     source: Source,
     tally: Tally,
+    /// Sender of the present datagram.
+    sender: Option<IpAddr>,
+    /// Last system function, which many lines share.
+    sfi: Option<Arc<str>>,
     recorded_at: Option<Timestamp>,
     /// Text of the last time, which many lines share.
     time_text: Vec<u8>,
@@ -43,6 +49,8 @@ impl Decoder {
                 input,
                 source,
                 tally: Tally::default(),
+                sender: None,
+                sfi: None,
                 recorded_at: None,
                 time_text: Vec::new(),
                 out: Vec::new(),
@@ -60,6 +68,11 @@ impl Decoder {
     pub(super) fn finish(&mut self) {
         let reader = &mut self.reader;
         self.lines.finish(|line| reader.line(line));
+    }
+
+    /// Sets the sender of the datagram that follows.
+    pub(super) fn set_sender(&mut self, sender: IpAddr) {
+        self.reader.sender = Some(sender);
     }
 
     /// Decodes a datagram of plain sentences.
@@ -104,20 +117,39 @@ impl Reader {
         let Some(tagged) = self.tally.read(line) else {
             return;
         };
-        if self.source == Source::Recording
-            && let Some(at) = tagged.tag.unix_micros.and_then(timestamp)
-        {
-            self.recorded(at);
-        }
+        let clock = tagged.tag.unix_micros.and_then(timestamp);
+        let stated = match self.source {
+            Source::Live => clock,
+            Source::Recording => {
+                clock.into_iter().for_each(|at| self.recorded(at));
+                None
+            }
+        };
+        self.sfi = tagged.tag.source.and_then(|text| self.shared_sfi(text));
         let sentence = tagged.sentence;
+        let source = Origin {
+            sfi: self.sfi.clone(),
+            sender: self.sender,
+            ..Origin::of_sentence(
+                Arc::clone(&self.input),
+                sentence.talker,
+                sentence.data.kind().code(),
+            )
+        };
         readings(&sentence.data, |reading| {
             self.out.push(Observation {
-                input: Arc::clone(&self.input),
-                talker: sentence.talker,
-                sentence: sentence.data.kind().code(),
+                source: source.clone(),
+                stated,
                 reading,
             });
         });
+    }
+
+    /// Returns the text of a system function, which is that of the last line in most cases.
+    fn shared_sfi(&self, text: &[u8]) -> Option<Arc<str>> {
+        let text = std::str::from_utf8(text).ok()?;
+        let known = self.sfi.clone().filter(|known| **known == *text);
+        Some(known.unwrap_or_else(|| text.into()))
     }
 
     /// Returns the rest of a line after its time; `None` when something in place of a time is none.
@@ -141,12 +173,9 @@ impl Reader {
             return;
         }
         let (talker, sentence) = RECORDED_TIME;
-        self.out.push(Observation {
-            input: Arc::clone(&self.input),
-            talker,
-            sentence,
-            reading: Reading::Time(at),
-        });
+        let source = Origin::of_sentence(Arc::clone(&self.input), talker, sentence);
+        let seen = Observation::now(source, Reading::Time(at));
+        self.out.push(seen);
     }
 }
 
@@ -195,8 +224,11 @@ mod tests {
         let (seen, tally) = decode(Source::Recording, &text);
         assert_eq!(tally.total_rejected(), 0, "{tally:?}");
         assert_eq!(times(&seen), ["2026-01-02T12:00:00Z"]);
+        assert_eq!(seen[1].stated, None);
         let (seen, _) = decode(Source::Live, &text);
         assert_eq!((seen.len(), times(&seen).len()), (1, 0));
+        let stated = Timestamp::parse("2026-01-02T12:00:00Z").ok();
+        assert_eq!(seen[0].stated, stated);
     }
 
     #[test]
@@ -214,8 +246,15 @@ mod tests {
     #[test]
     fn observations_carry_their_source() {
         let (seen, _) = decode(Source::Live, "$HCHDG,98.3,0.0,E,12.6,W*57\r\n");
-        assert_eq!(&*seen[0].input, "log");
-        assert_eq!((&seen[0].talker, &seen[0].sentence), (b"HC", b"HDG"));
+        let plain = Origin::of_sentence("log".into(), *b"HC", *b"HDG");
+        assert_eq!((&seen[0].source, seen[0].stated), (&plain, None));
+        let mut decoder = Decoder::new("log".into(), Source::Live);
+        decoder.set_sender(IpAddr::from([10, 0, 0, 2]));
+        let datagram = format!("UdPbC\0\\s:HE0001,n:1*0C\\{HEADING}");
+        decoder.tagged_datagram(datagram.as_bytes());
+        let source = decoder.take_observations().remove(0).source;
+        assert_eq!(source.sfi.as_deref(), Some("HE0001"));
+        assert_eq!(source.sender, Some(IpAddr::from([10, 0, 0, 2])));
     }
 
     #[test]

@@ -19,7 +19,11 @@ pub(super) fn readings(data: &Data, mut each: impl FnMut(Reading)) {
         Data::Hdm(hdm) => hdm
             .heading_deg_magnetic
             .and_then(MagneticHeading::new)
-            .map(Reading::Magnetic),
+            .map(|heading| Reading::Magnetic {
+                heading,
+                deviation: None,
+                variation: None,
+            }),
         Data::Hdt(hdt) => hdt
             .heading_deg_true
             .and_then(TrueHeading::new)

@@ -2,18 +2,23 @@
 //!
 //! Signal K 1.7, "Keys reference (vessel)": SI units, radians, east and starboard and bow-up
 //! positive; `navigation.headingCompass` is the raw reading, `headingMagnetic` has deviation
-//! applied. Readings get the talker `SK` and the sentence with the same meaning.
+//! applied. Readings get the talker `SK` and the sentence with the same meaning, and carry the
+//! `$source` and `timestamp` of their update. A heading is combined with the deviation and
+//! variation of its own source.
 //!
 //! Values that a server computes are ignored: a true heading made of a magnetic one is no reference
 //! for the compass. Other vessels are ignored too.
 
 use super::signalk_value::{difference_deg, direction_deg, read_standalone};
 use super::stats::InputStats;
-use crate::instruments::{Observation, Reading};
-use binnacle_compass::angle::{CompassHeading, Deviation, Variation};
+use crate::instruments::{Observation, Reading, Source};
+use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, Variation};
+use binnacle_compass::time::Timestamp;
+use binnacle_nmea::n2k::{Address, Name};
 use serde::Deserialize;
 use serde_json::Value;
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Paths to subscribe to.
@@ -33,6 +38,8 @@ pub(super) const PATHS: [&str; 12] = [
 ];
 
 const TALKER: [u8; 2] = *b"SK";
+/// Limit on sources whose deviation is remembered.
+const MAX_SOURCES: usize = 200;
 /// Source of values that the server computes itself.
 const DERIVED: &str = "derived-data";
 
@@ -42,7 +49,12 @@ pub(super) struct DeltaReader {
     input: Arc<str>,
     /// `vessels.urn:…`, once the server has identified itself.
     own_ship: Option<String>,
-    /// Last value of the server; never applied.
+    /// Last deviation and variation of each source; never applied.
+    differences: HashMap<Option<Arc<str>>, Differences>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Differences {
     deviation: Option<Deviation>,
     variation: Option<Variation>,
 }
@@ -52,6 +64,9 @@ pub(super) struct DeltaReader {
 struct Message<'a> {
     #[serde(borrow, rename = "self")]
     own_ship: Option<Cow<'a, str>>,
+    /// Present time of the server, in its greeting.
+    #[serde(borrow)]
+    timestamp: Option<Cow<'a, str>>,
     #[serde(borrow)]
     context: Option<Cow<'a, str>>,
     #[serde(borrow, default)]
@@ -61,7 +76,12 @@ struct Message<'a> {
 #[derive(Deserialize)]
 struct Update<'a> {
     #[serde(borrow, rename = "$source")]
-    source: Option<Cow<'a, str>>,
+    source_ref: Option<Cow<'a, str>>,
+    /// What the server knows of the device. It may take any form.
+    source: Option<Value>,
+    /// Time at which the values were measured.
+    #[serde(borrow)]
+    timestamp: Option<Cow<'a, str>>,
     /// Absent in updates of metadata.
     #[serde(borrow, default)]
     values: Vec<PathValue<'a>>,
@@ -79,8 +99,7 @@ impl DeltaReader {
         DeltaReader {
             input,
             own_ship: None,
-            deviation: None,
-            variation: None,
+            differences: HashMap::new(),
         }
     }
 
@@ -98,21 +117,58 @@ impl DeltaReader {
             stats.reject("another vessel");
             return out;
         }
+        let greeting = message.timestamp.as_deref().map(Timestamp::parse);
+        if let Some(Ok(at)) = greeting {
+            let source = Source::of_sentence(Arc::clone(&self.input), TALKER, *b"SYS");
+            out.push(Observation::now(source, Reading::Greeting(at)));
+        }
         for update in &message.updates {
-            if update.source.as_deref().is_some_and(is_derived) {
+            if update.source_ref.as_deref().is_some_and(is_derived) {
                 stats.reject("computed by the server");
                 continue;
             }
+            let device = self.device(update);
+            let stated = update.timestamp.as_deref().map(Timestamp::parse);
+            let stated = match stated.transpose() {
+                Ok(stated) => stated,
+                Err(_) => {
+                    stats.reject("bad timestamp");
+                    continue;
+                }
+            };
             // A compass reading is combined with the deviation beside it.
             let (differences, others): (Vec<_>, Vec<_>) = update
                 .values
                 .iter()
                 .partition(|value| value.path.starts_with("navigation.magnetic"));
             for value in differences.into_iter().chain(others) {
-                self.read_value(value, stats, &mut out);
+                self.read_value(value, &device, stated, stats, &mut out);
             }
         }
         out
+    }
+
+    /// Returns the device of an update, with any sentence.
+    fn device(&self, update: &Update<'_>) -> Source {
+        let text = |key: &str| {
+            let source = update.source.as_ref()?;
+            source.get(key)?.as_str()
+        };
+        let signalk = match (&update.source_ref, text("label")) {
+            (Some(source_ref), _) => Some(source_ref.to_string()),
+            // Servers make `$source` of label and address, or label and talker.
+            (None, Some(label)) => {
+                let device = text("src").or_else(|| text("talker"));
+                Some(device.map_or(label.to_owned(), |device| format!("{label}.{device}")))
+            }
+            (None, None) => None,
+        };
+        Source {
+            signalk: signalk.map(Into::into),
+            n2k_address: text("src").and_then(Address::parse),
+            n2k_name: text("canName").and_then(Name::parse),
+            ..Source::of_sentence(Arc::clone(&self.input), TALKER, *b"SYS")
+        }
     }
 
     fn is_own_ship(&self, context: Option<&str>) -> bool {
@@ -125,6 +181,8 @@ impl DeltaReader {
     fn read_value(
         &mut self,
         value: &PathValue<'_>,
+        device: &Source,
+        stated: Option<Timestamp>,
         stats: &InputStats,
         out: &mut Vec<Observation>,
     ) {
@@ -134,22 +192,29 @@ impl DeltaReader {
         let before = out.len();
         let mut push = |sentence: &[u8; 3], reading| {
             out.push(Observation {
-                input: Arc::clone(&self.input),
-                talker: TALKER,
-                sentence: *sentence,
+                source: Source {
+                    sentence: *sentence,
+                    ..device.clone()
+                },
+                stated,
                 reading,
             });
         };
+        let known = self.differences.get(&device.signalk);
+        let mut differences = known.copied().unwrap_or_default();
         let read = match path {
             "navigation.magneticDeviation" => difference_deg(&value.value).map(|deg| {
-                self.deviation = deg.and_then(Deviation::new);
+                differences.deviation = deg.and_then(Deviation::new);
             }),
             "navigation.magneticVariation" => difference_deg(&value.value).map(|deg| {
-                self.variation = deg.and_then(Variation::new);
+                differences.variation = deg.and_then(Variation::new);
             }),
             "navigation.headingCompass" => direction_deg(&value.value).map(|deg| {
                 if let Some(raw) = deg.and_then(CompassHeading::new) {
-                    let (deviation, variation) = (self.deviation, self.variation);
+                    let Differences {
+                        deviation,
+                        variation,
+                    } = differences;
                     let reading = Reading::Compass {
                         raw,
                         deviation,
@@ -158,13 +223,37 @@ impl DeltaReader {
                     push(b"HDG", reading);
                 }
             }),
+            "navigation.headingMagnetic" => direction_deg(&value.value).map(|deg| {
+                if let Some(heading) = deg.and_then(MagneticHeading::new) {
+                    let Differences {
+                        deviation,
+                        variation,
+                    } = differences;
+                    let reading = Reading::Magnetic {
+                        heading,
+                        deviation,
+                        variation,
+                    };
+                    push(b"HDM", reading);
+                }
+            }),
             _ => read_standalone(path, &value.value, &mut push),
         };
         if read.is_err() {
             out.truncate(before);
             return stats.reject("bad value");
         }
+        if path.starts_with("navigation.magnetic") {
+            self.remember(device, differences);
+        }
         stats.count_value(path);
+    }
+
+    fn remember(&mut self, device: &Source, differences: Differences) {
+        let is_known = self.differences.contains_key(&device.signalk);
+        if is_known || self.differences.len() < MAX_SOURCES {
+            self.differences.insert(device.signalk.clone(), differences);
+        }
     }
 }
 
@@ -229,7 +318,10 @@ mod tests {
             assert!((degrees.to_radians() - deviation).abs() < 1e-12);
             let degrees = found_variation.unwrap().degrees_east();
             assert!((degrees.to_radians() - variation).abs() < 1e-12);
-            assert_eq!((&seen[0].talker, &seen[0].sentence), (b"SK", b"HDG"));
+            assert_eq!(
+                (&seen[0].source.talker, &seen[0].source.sentence),
+                (b"SK", b"HDG")
+            );
             assert_eq!(stats.status().sentences["navigation.headingCompass"], 1);
         }
     }

@@ -1,7 +1,7 @@
 //! Signal K values in the agent's units.
 
 use crate::instruments::Reading;
-use binnacle_compass::angle::{CourseOverGround, MagneticHeading, TrueHeading};
+use binnacle_compass::angle::{CourseOverGround, TrueHeading};
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 use serde::Deserialize;
@@ -44,10 +44,6 @@ pub(super) fn read_standalone(
         return Ok(());
     }
     match path {
-        "navigation.headingMagnetic" => {
-            let heading = direction_deg(value)?.and_then(MagneticHeading::new);
-            push(b"HDM", Reading::Magnetic(heading.ok_or(InvalidValue)?));
-        }
         "navigation.headingTrue" => {
             let heading = direction_deg(value)?.and_then(TrueHeading::new);
             push(b"HDT", Reading::True(heading.ok_or(InvalidValue)?));

@@ -267,7 +267,7 @@ async fn a_signal_k_server_is_asked_and_followed_over_a_restart() {
         }
         let seen = input.next().await;
         assert_eq!(seen.len(), 2);
-        assert_eq!(&seen[0].sentence, b"HDG");
+        assert_eq!(&seen[0].source.sentence, b"HDG");
         server.close(None).await.unwrap();
     }
     let status = input.stats.status();

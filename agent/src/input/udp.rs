@@ -41,14 +41,17 @@ async fn receive(socket: Socket, decode: fn(&mut Decoder, &[u8]), link: &Link) -
     let mut decoder = Decoder::new(link.name.clone(), Source::Live);
     let mut buffer = vec![0; MAX_DATAGRAM_BYTES];
     loop {
-        let mut waiting = Some(socket.recv(&mut buffer).await?);
+        let mut waiting = Some(socket.recv_from(&mut buffer).await?);
         let (mut datagrams, mut bytes) = (0, 0);
-        while let Some(count) = waiting {
+        while let Some((count, sender)) = waiting {
+            decoder.set_sender(sender.ip());
             decode(&mut decoder, &buffer[..count]);
             datagrams += 1;
             bytes += count;
             let more = datagrams < MAX_DATAGRAMS_AT_ONCE;
-            waiting = more.then(|| socket.try_recv(&mut buffer).ok()).flatten();
+            waiting = more
+                .then(|| socket.try_recv_from(&mut buffer).ok())
+                .flatten();
         }
         link.stats.count_received(bytes, &decoder.take_tally());
         link.offer(decoder.take_observations())?;

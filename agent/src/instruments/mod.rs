@@ -1,15 +1,26 @@
-//! Instruments: observations of sources, the roles that rank them, and the GNSS clock.
+//! Instruments: observations of sources, their age, the roles that rank them, and the GNSS clock.
 
 mod clock_checkpoint;
 mod gnss_clock;
+mod heard;
+mod independence;
 mod observation;
+mod own_output;
 mod readings;
 mod role;
 mod roles;
+mod source;
+mod stated_clock;
+mod two_sensors;
 
 pub(crate) use clock_checkpoint::ClockCheckpoint;
-pub(crate) use observation::{AGENT_TALKER, Observation, RECORDED_TIME, Reading, is_recorded_time};
+pub(crate) use heard::{HeardSource, HeardSources, SourceReport};
+pub(crate) use independence::Independence;
+pub(crate) use observation::{Observation, RECORDED_TIME, Reading, is_recorded_time};
+pub(crate) use own_output::{OwnOutput, SentHeading};
 pub(crate) use readings::{Latest, Readings};
 #[cfg(test)]
 pub(crate) use roles::ReferenceHeading;
-pub(crate) use roles::{Roles, Signal};
+pub(crate) use roles::{Instrument, Refusal, Roles, Signal};
+pub(crate) use source::{AGENT_TALKER, Source};
+pub(crate) use stated_clock::StatedClocks;

@@ -4,36 +4,42 @@
 //! A value that the instrument left empty is absent, never zero. The compass heading is always the
 //! raw reading, before any deviation.
 
+use super::source::Source;
 use binnacle_compass::angle::{
     CompassHeading, CourseOverGround, Deviation, MagneticHeading, TrueHeading, Variation,
 };
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
-use std::sync::Arc;
-
-/// Talker of the agent's own sentences. Sources without a configured talker never match its
-/// HDG and THS.
-pub(crate) const AGENT_TALKER: [u8; 2] = *b"II";
 
 /// Talker and sentence of a time that the recording gave, not an instrument.
 pub(crate) const RECORDED_TIME: ([u8; 2], [u8; 3]) = (*b"--", *b"LOG");
 
 /// Returns whether an observation is the time that a recording gives its lines.
 pub(crate) fn is_recorded_time(seen: &Observation) -> bool {
-    (seen.talker, seen.sentence) == RECORDED_TIME
+    (seen.source.talker, seen.source.sentence) == RECORDED_TIME
 }
 
 /// One reading from one source.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Observation {
-    /// Configured name of the input.
-    pub(crate) input: Arc<str>,
-    /// Talker (`HC`, `HE`, `GP` …); `SK` for Signal K.
-    pub(crate) talker: [u8; 2],
-    /// Sentence (`HDG`, `THS` …), given to Signal K values by their meaning.
-    pub(crate) sentence: [u8; 3],
+    /// Source.
+    pub(crate) source: Source,
+    /// Time at which the reading was measured, as its source states it (Signal K `timestamp`, TAG
+    /// block `c:`).
+    pub(crate) stated: Option<Timestamp>,
     /// Content of the sentence.
     pub(crate) reading: Reading,
+}
+
+impl Observation {
+    /// Creates an observation that states no time: it was measured when it arrives.
+    pub(crate) fn now(source: Source, reading: Reading) -> Observation {
+        Observation {
+            source,
+            stated: None,
+            reading,
+        }
+    }
 }
 
 /// Readings that the agent uses.
@@ -49,7 +55,14 @@ pub(crate) enum Reading {
         variation: Option<Variation>,
     },
     /// HDM: only the configuration knows whether deviation was applied.
-    Magnetic(MagneticHeading),
+    Magnetic {
+        /// With or without deviation.
+        heading: MagneticHeading,
+        /// As a server gives it beside the heading; never applied.
+        deviation: Option<Deviation>,
+        /// As a server gives it beside the heading; never applied.
+        variation: Option<Variation>,
+    },
     /// HDT, or THS in mode A.
     True(TrueHeading),
     /// A true heading that the instrument itself marks as not valid (THS mode other than A).
@@ -65,6 +78,8 @@ pub(crate) enum Reading {
     },
     /// ZDA: UTC date and time alone.
     Time(Timestamp),
+    /// Present time of a server, as it greets.
+    Greeting(Timestamp),
     /// VTG: speed over ground.
     Speed {
         /// Knots.

@@ -1,16 +1,19 @@
 //! Latest readings of the instruments.
 
-use super::roles::{ReferenceHeading, Signal};
+use super::roles::{Instrument, ReferenceHeading, Refusal, Signal};
 use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use binnacle_compass::position::Position;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// A reading and its receive time by the computer's clock.
+/// Latest intervals of the compass, of which the middle one counts: one that is missed does not.
+const INTERVALS: usize = 7;
+
+/// A reading and the time at which it was measured, by the computer's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Latest<T> {
     value: T,
-    heard: Instant,
+    measured: Instant,
 }
 
 impl<T: Copy> Latest<T> {
@@ -20,7 +23,7 @@ impl<T: Copy> Latest<T> {
     /// not look alive because of it.
     pub(crate) fn within(this: Option<Latest<T>>, age: Duration, now: Instant) -> Option<T> {
         let latest = this?;
-        (now.saturating_duration_since(latest.heard) <= age).then_some(latest.value)
+        (now.saturating_duration_since(latest.measured) <= age).then_some(latest.value)
     }
 }
 
@@ -28,34 +31,137 @@ impl<T: Copy> Latest<T> {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Readings {
     pub(crate) compass: Option<Latest<CompassHeading>>,
+    /// Set while two sensors that read differently send as the compass.
+    pub(crate) compass_is_mixed: bool,
     pub(crate) gyro: Option<Latest<TrueHeading>>,
     pub(crate) satellite: Option<Latest<TrueHeading>>,
     pub(crate) position: Option<Latest<Position>>,
     pub(crate) sog_kn: Option<Latest<f64>>,
     pub(crate) rate_of_turn_deg_min: Option<Latest<f64>>,
     pub(crate) roll_deg: Option<Latest<f64>>,
+    compass_intervals: Intervals,
 }
 
 impl Readings {
-    /// Applies the signal of an instrument, heard at `heard`.
-    pub(crate) fn apply(&mut self, signal: Signal, heard: Instant) {
+    /// Applies the signal of an instrument, measured at `measured`.
+    pub(crate) fn apply(&mut self, signal: Signal, measured: Instant) {
         match signal {
-            Signal::Compass(value) => self.compass = Some(Latest { value, heard }),
-            Signal::Gyro(ReferenceHeading { heading: value, .. }) => {
-                self.gyro = Some(Latest { value, heard });
+            Signal::Compass(value) => {
+                self.compass_intervals.note(self.compass, measured);
+                self.compass = latest(self.compass, value, measured);
+                self.compass_is_mixed = false;
             }
-            Signal::GyroInvalid => self.gyro = None,
-            Signal::Satellite(ReferenceHeading { heading: value, .. }) => {
-                self.satellite = Some(Latest { value, heard });
+            Signal::Gyro(ReferenceHeading { heading, .. }) => {
+                self.gyro = latest(self.gyro, heading, measured);
             }
-            Signal::SatelliteInvalid => self.satellite = None,
-            Signal::Position(value) => self.position = Some(Latest { value, heard }),
-            Signal::Speed(value) => self.sog_kn = Some(Latest { value, heard }),
+            Signal::Satellite(ReferenceHeading { heading, .. }) => {
+                self.satellite = latest(self.satellite, heading, measured);
+            }
+            Signal::Refused(Instrument::Compass, refusal) => {
+                self.compass = None;
+                self.compass_is_mixed = refusal == Refusal::TwoSensors;
+            }
+            Signal::GyroInvalid | Signal::Refused(Instrument::Gyro, _) => self.gyro = None,
+            Signal::SatelliteInvalid | Signal::Refused(Instrument::Satellite, _) => {
+                self.satellite = None;
+            }
+            Signal::Position(value) => self.position = latest(self.position, value, measured),
+            Signal::Speed(value) => self.sog_kn = latest(self.sog_kn, value, measured),
             Signal::RateOfTurn(value) => {
-                self.rate_of_turn_deg_min = Some(Latest { value, heard });
+                self.rate_of_turn_deg_min = latest(self.rate_of_turn_deg_min, value, measured);
             }
-            Signal::Roll(value) => self.roll_deg = Some(Latest { value, heard }),
+            Signal::Roll(value) => self.roll_deg = latest(self.roll_deg, value, measured),
             Signal::Time(_) | Signal::Jump(_) | Signal::Course(_) | Signal::Temperature(_) => {}
         }
+    }
+
+    /// Returns the compass's own interval; zero before it is known.
+    pub(crate) fn compass_interval(&self) -> Duration {
+        self.compass_intervals.middle()
+    }
+}
+
+/// Returns the later of two readings: a delayed one replaces nothing newer.
+fn latest<T: Copy>(known: Option<Latest<T>>, value: T, measured: Instant) -> Option<Latest<T>> {
+    match known {
+        Some(known) if known.measured > measured => Some(known),
+        _ => Some(Latest { value, measured }),
+    }
+}
+
+/// Latest intervals between readings.
+#[derive(Clone, Copy, Debug, Default)]
+struct Intervals {
+    recent: [Duration; INTERVALS],
+    count: usize,
+}
+
+impl Intervals {
+    fn note<T>(&mut self, last: Option<Latest<T>>, measured: Instant) {
+        let Some(last) = last else {
+            return;
+        };
+        let interval = measured.saturating_duration_since(last.measured);
+        self.recent[self.count % INTERVALS] = interval;
+        self.count = self.count.saturating_add(1);
+    }
+
+    fn middle(&self) -> Duration {
+        let known = self.count.min(INTERVALS);
+        let mut sorted = self.recent;
+        sorted[..known].sort_unstable();
+        // Of an even number the shorter one: the output ends sooner.
+        sorted[..known]
+            .get(known.saturating_sub(1) / 2)
+            .copied()
+            .unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn compass(degrees: f64) -> Signal {
+        Signal::Compass(CompassHeading::new(degrees).unwrap())
+    }
+
+    #[test]
+    fn a_reading_is_as_old_as_its_measurement() {
+        let start = Instant::now() + Duration::from_mins(1);
+        let mut readings = Readings::default();
+        readings.apply(compass(10.0), start);
+        let within = |readings: Readings, ms| {
+            let now = start + Duration::from_millis(ms);
+            Latest::within(readings.compass, Duration::from_secs(2), now).is_some()
+        };
+        assert!(within(readings, 2_000));
+        assert!(!within(readings, 2_001));
+        // A delayed reading is no newer than it was measured.
+        readings.apply(compass(20.0), start - Duration::from_secs(5));
+        assert!(!within(readings, 2_001));
+    }
+
+    #[test]
+    fn the_compass_has_its_own_interval() {
+        let start = Instant::now();
+        let mut readings = Readings::default();
+        assert_eq!(readings.compass_interval(), Duration::ZERO);
+        for at in [0, 10, 20, 30, 90, 100] {
+            readings.apply(compass(1.0), start + Duration::from_secs(at));
+        }
+        assert_eq!(readings.compass_interval(), Duration::from_secs(10));
+    }
+
+    #[test]
+    fn a_mixed_compass_has_no_reading_until_it_is_one_again() {
+        let start = Instant::now();
+        let mut readings = Readings::default();
+        readings.apply(compass(1.0), start);
+        let mixed = Signal::Refused(Instrument::Compass, Refusal::TwoSensors);
+        readings.apply(mixed, start);
+        assert!(readings.compass.is_none() && readings.compass_is_mixed);
+        readings.apply(compass(1.0), start);
+        assert!(readings.compass.is_some() && !readings.compass_is_mixed);
     }
 }

@@ -3,17 +3,12 @@
 use super::Agent;
 use crate::alert::AlertRecord;
 use crate::corrected_heading::{self, CardRow, CorrectedHeading, CorrectionInputs};
-use crate::instruments::Latest;
+use crate::instruments::{Latest, SentHeading};
 use crate::output::{Quality, heading_sentences};
 use crate::status::ModelStatus;
 use crate::{card_invalidation, clock};
 use binnacle_wire::messages::CardWithdrawn;
-use std::time::Duration;
 use tokio::time::Instant;
-
-/// Age up to which a position serves: variation at twenty knots changes by less than a tenth of a
-/// degree meanwhile.
-const POSITION_MAX_AGE: Duration = Duration::from_mins(10);
 
 impl Agent {
     /// Returns the withdrawal of the card, by the server or by officers' reports.
@@ -31,9 +26,12 @@ impl Agent {
         let model = self.uplink_handle.model.borrow();
         let now = Instant::now();
         let readings = &self.acquisition.readings;
+        let compass_age = self.silence.compass_steering(readings.compass_interval());
+        let position_age = self.silence.position_steering();
         let inputs = CorrectionInputs {
-            compass: Latest::within(readings.compass, self.silence.stale_s.duration(), now),
-            position: Latest::within(readings.position, POSITION_MAX_AGE, now),
+            compass: Latest::within(readings.compass, compass_age, now),
+            compass_is_mixed: readings.compass_is_mixed,
+            position: Latest::within(readings.position, position_age, now),
             time: self.acquisition.time(),
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
@@ -56,6 +54,9 @@ impl Agent {
             version: model.version,
             age_days: model.age_days.unwrap_or_default(),
         });
+        if let Some(sent) = sent_heading(&corrected) {
+            self.acquisition.note_sent(sent, Instant::now());
+        }
         let mut sentences = heading_sentences(&corrected, quality);
         if let Some(alarm) = &mut self.alarm {
             let due = alarm.due(self.alert_monitor.record(), Instant::now());
@@ -78,4 +79,14 @@ impl Agent {
             reference_grade: model.model.reference_grade,
         })
     }
+}
+
+/// Returns the content of HDG, if it has all three angles.
+fn sent_heading(corrected: &CorrectedHeading) -> Option<SentHeading> {
+    corrected.magnetic_deg?;
+    Some(SentHeading {
+        raw: corrected.compass_deg?,
+        deviation: corrected.deviation_deg?,
+        variation: corrected.variation_deg?,
+    })
 }

@@ -34,6 +34,8 @@ impl Agent {
             .collect();
         status.link = self.uplink_handle.link.borrow().clone();
         status.raw_log = self.raw_log.status();
+        status.sources = self.acquisition.sources(now);
+        status.source_problems = self.acquisition.source_problems(now);
         status.clock_problem = self.acquisition.clock_problem();
         status.storage_problem = self.unstored.problem.as_ref().map(|problem| {
             let waiting = self.unstored.samples.len();

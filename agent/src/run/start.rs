@@ -33,8 +33,8 @@ impl Agent {
         let judged_by = uplink_handle.model.borrow().as_ref().map(|model| model.id);
         let settings = uplink_handle.settings.borrow().clone();
         let last_contact = uplink_handle.link.borrow().last_contact;
-        let stale_s = config.silence.stale_s.0;
-        let mut acquisition = Acquisition::new(&config.roles, stale_s, settings, exclusion);
+        let (roles, silence) = (&config.roles, &config.silence);
+        let mut acquisition = Acquisition::new(roles, silence, settings, exclusion);
         let is_recorded = |input: &InputConfig| matches!(input, InputConfig::File(_));
         if !config.inputs.values().any(is_recorded) {
             // The computer may have lost its time with its power.

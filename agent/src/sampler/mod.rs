@@ -27,7 +27,7 @@ pub(crate) use exclusion::Exclusion;
 pub(crate) use outcome::{Outcome, Tally};
 pub(crate) use sample_builder::{WINDOW_S, Window, median};
 
-use crate::instruments::Signal;
+use crate::instruments::{Instrument, Signal};
 use crate::weak_field::is_weak;
 use binnacle_compass::angle::{wrap_180, wrap_360};
 use binnacle_compass::position::Position;
@@ -133,6 +133,9 @@ impl Sampler {
                 self.satellite.add_from(from.source, from.heading.degrees());
             }
             Signal::SatelliteInvalid => self.satellite.invalidate(),
+            Signal::Refused(Instrument::Compass, refusal) => self.compass.refuse(refusal),
+            Signal::Refused(Instrument::Gyro, refusal) => self.gyro.refuse(refusal),
+            Signal::Refused(Instrument::Satellite, refusal) => self.satellite.refuse(refusal),
             Signal::Position(position) => self.position = self.last_value(position),
             Signal::Speed(knots) if SPEED_KN.contains(&knots) => {
                 self.speed = self.last_value(knots);
@@ -251,10 +254,16 @@ impl Sampler {
         if let Some(exclusion) = self.exclusion {
             return Err(exclusion.outcome());
         }
+        if let Some(refusal) = self.compass.refusal() {
+            return Err(Outcome::of_refusal(refusal));
+        }
         let compass = self.compass.span().ok_or(Outcome::NoCompass)?;
         let (gyro, satellite) = (self.gyro.span(), self.satellite.span());
+        // A refused reference is no reason to do without one.
+        let refusal = self.gyro.refusal().or(self.satellite.refusal());
+        let refusal = refusal.filter(|_| gyro.or(satellite).is_none());
         let details = self.details.means();
-        let by_course = gyro.or(satellite).is_none();
+        let by_course = gyro.or(satellite).is_none() && refusal.is_none();
         if by_course && !(self.is_unreferenced(index) && details.has_course()) {
             return Err(Outcome::NoReference);
         }
@@ -264,7 +273,8 @@ impl Sampler {
         }
         let enough = |span: &HeadingSpan| span.readings >= MIN_READINGS;
         let (gyro, satellite) = (gyro.filter(enough), satellite.filter(enough));
-        if !enough(&compass) || (!by_course && gyro.or(satellite).is_none()) {
+        let needs_reference = !by_course && refusal.is_none();
+        if !enough(&compass) || (needs_reference && gyro.or(satellite).is_none()) {
             return Err(Outcome::Sparse);
         }
         let sog_kn = LastValue::if_fresh(self.speed, index).ok_or(Outcome::NoSpeed)?;
@@ -279,6 +289,9 @@ impl Sampler {
         }
         if self.heading_track().swing_deg() > 2.0 * self.settings.max_swing_deg {
             return Err(Outcome::Swinging);
+        }
+        if let Some(refusal) = refusal {
+            return Err(Outcome::of_refusal(refusal));
         }
         let degrees = |span: HeadingSpan| wrap_360(span.mean);
         Ok(Window {

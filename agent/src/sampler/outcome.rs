@@ -1,5 +1,6 @@
 //! Outcomes of ten-second windows, and their counts.
 
+use crate::instruments::Refusal;
 use std::collections::BTreeMap;
 
 /// Acceptance, or the first reason for rejection.
@@ -21,6 +22,12 @@ pub(crate) enum Outcome {
     NoCompass,
     /// Neither gyro nor satellite compass.
     NoReference,
+    /// The reference is made of the compass.
+    NotIndependent,
+    /// The reference is not yet shown to be independent of the compass.
+    UnprovenReference,
+    /// Two sensors that read differently send as one.
+    TwoSensors,
     /// No fresh position.
     NoPosition,
     /// No fresh speed.
@@ -39,7 +46,18 @@ pub(crate) enum Outcome {
     HighLatitude,
 }
 
-const ALL: [(Outcome, &str); 16] = [
+impl Outcome {
+    /// Returns the outcome of a window whose heading must not be used.
+    pub(super) fn of_refusal(refusal: Refusal) -> Outcome {
+        match refusal {
+            Refusal::NotIndependent => Outcome::NotIndependent,
+            Refusal::Unproven => Outcome::UnprovenReference,
+            Refusal::TwoSensors => Outcome::TwoSensors,
+        }
+    }
+}
+
+const ALL: [(Outcome, &str); 19] = [
     (Outcome::Accepted, "accepted"),
     (Outcome::ExcludedBerthed, "hold_berthed"),
     (Outcome::ExcludedMagneticCargo, "hold_magnetic_cargo"),
@@ -48,6 +66,9 @@ const ALL: [(Outcome, &str); 16] = [
     (Outcome::NoTime, "no_time"),
     (Outcome::NoCompass, "no_compass"),
     (Outcome::NoReference, "no_reference"),
+    (Outcome::NotIndependent, "not_independent"),
+    (Outcome::UnprovenReference, "unproven_reference"),
+    (Outcome::TwoSensors, "two_sensors"),
     (Outcome::NoPosition, "no_position"),
     (Outcome::NoSpeed, "no_speed"),
     (Outcome::Sparse, "sparse"),

@@ -1,5 +1,6 @@
 //! Heading of one instrument over the windows, unwound across north.
 
+use crate::instruments::Refusal;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::sample::SourceId;
 
@@ -26,6 +27,7 @@ pub(super) struct HeadingTrack {
     high: f64,
     readings: u32,
     invalid: bool,
+    refusal: Option<Refusal>,
     source: Option<SourceId>,
     earlier: [Option<HeadingSpan>; 2],
 }
@@ -67,9 +69,19 @@ impl HeadingTrack {
         self.invalid = true;
     }
 
+    /// Marks the window as one whose heading must not be used.
+    pub(super) fn refuse(&mut self, refusal: Refusal) {
+        self.refusal = Some(refusal);
+    }
+
+    /// Returns the reason why the window's heading must not be used.
+    pub(super) fn refusal(&self) -> Option<Refusal> {
+        self.refusal
+    }
+
     /// Returns the heading in the open window, if it has readings.
     pub(super) fn span(&self) -> Option<HeadingSpan> {
-        if self.readings == 0 || self.invalid {
+        if self.readings == 0 || self.invalid || self.refusal.is_some() {
             return None;
         }
         Some(HeadingSpan {
@@ -100,6 +112,7 @@ impl HeadingTrack {
         self.earlier = [self.span(), self.earlier[0]];
         self.readings = 0;
         self.invalid = false;
+        self.refusal = None;
     }
 
     /// Discards the previous windows, which no longer adjoin this one.

@@ -8,6 +8,7 @@ pub(crate) use offline::offline_status;
 use crate::alert::AlertStatus;
 use crate::corrected_heading::{CardRow, CorrectedHeading};
 use crate::input::InputStatus;
+use crate::instruments::SourceReport;
 use crate::raw_log::RawLogStatus;
 use crate::sampler::Exclusion;
 use crate::spool::{BudgetAccount, SpoolStatus};
@@ -34,6 +35,9 @@ pub(crate) struct Status {
     /// Fault of the receiver's time.
     #[serde(default)]
     pub(crate) clock_problem: Option<String>,
+    /// Sources that must not be used as they are configured, and why.
+    #[serde(default)]
+    pub(crate) source_problems: Vec<String>,
     /// Reason why samples cannot be stored.
     #[serde(default)]
     pub(crate) storage_problem: Option<String>,
@@ -57,6 +61,9 @@ pub(crate) struct Status {
     /// Ten-second windows by outcome since the agent started.
     pub(crate) windows: BTreeMap<String, u64>,
     pub(crate) inputs: Vec<InputReport>,
+    /// Every source that is heard.
+    #[serde(default)]
+    pub(crate) sources: Vec<SourceReport>,
     pub(crate) link: LinkStatus,
     pub(crate) spool: SpoolStatus,
     /// Byte budget of the link, and its balance.

@@ -35,6 +35,9 @@ impl Status {
                 writeln!(out, "{what:<11}{problem}")?;
             }
         }
+        for problem in &self.source_problems {
+            writeln!(out, "SOURCES    {problem}")?;
+        }
         self.write_alert(out)?;
         self.write_heading(out)?;
         match &self.model {
@@ -64,6 +67,9 @@ impl Status {
         self.write_link(out)?;
         for input in &self.inputs {
             input.write_text(out)?;
+        }
+        for source in &self.sources {
+            writeln!(out, "source     {}", source.line())?;
         }
         for (outcome, windows) in &self.windows {
             writeln!(out, "windows    {windows} {outcome}")?;
@@ -189,6 +195,7 @@ mod tests {
     use super::*;
     use crate::config::Profile;
     use crate::corrected_heading::CorrectedHeading;
+    use crate::instruments::SourceReport;
     use crate::sampler::Exclusion;
     use crate::spool::{BudgetAccount, SpoolStatus};
     use binnacle_compass::model::ReferenceGrade;
@@ -209,6 +216,17 @@ mod tests {
             }),
             clock_problem: Some("the receiver's time jumped".to_owned()),
             storage_problem: Some("samples cannot be stored".to_owned()),
+            source_problems: vec!["gyro: two sensors".to_owned()],
+            sources: vec![SourceReport {
+                input: "bridge".to_owned(),
+                talker: "HC".to_owned(),
+                sentence: "HDG".to_owned(),
+                rate_hz: Some(10.0),
+                last: "compass 090.0°".to_owned(),
+                age_s: Some(0.0),
+                serves: vec!["compass".to_owned()],
+                ..SourceReport::default()
+            }],
             heading: CorrectedHeading {
                 problem: Some("there is no model yet".to_owned()),
                 ..CorrectedHeading::default()
@@ -233,6 +251,8 @@ mod tests {
             "no gyro or satellite compass checks it",
             "CLOCK      the receiver's time jumped\n",
             "STORAGE    samples cannot be stored\n",
+            "SOURCES    gyro: two sensors\n",
+            "source     bridge HCHDG  10.0/s  compass 090.0° [compass]\n",
             "not corrected: there is no model yet",
             "link       not enrolled\n",
             "profile    metered, -120 bytes left at 8000 a day\n",

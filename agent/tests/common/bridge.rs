@@ -15,6 +15,8 @@ pub(crate) const START_S: i64 = 1_788_220_800;
 pub(crate) const LEAD_DEG: f64 = 3.0;
 /// Difference by which the course over ground is more than the heading.
 pub(crate) const DRIFT_DEG: f64 = 2.0;
+/// Noise of the compass, part of which lasts for twenty seconds.
+const NOISE_DEG: f64 = 0.2;
 /// Mean of the roll, its standard deviation, and the temperature of the air.
 pub(crate) const LIST_DEG: f64 = -0.6;
 pub(crate) const ROLL_DEG: f64 = 1.5;
@@ -51,14 +53,16 @@ fn second_with(offset_s: i64, lead_deg: f64) -> Vec<u8> {
     say(
         b"HC",
         Data::Hdg(Hdg {
-            reading_deg: Some((heading - lead_deg).rem_euclid(360.0)),
+            reading_deg: Some(
+                (heading + yaw_deg(offset_s) - lead_deg + noise_deg(offset_s)).rem_euclid(360.0),
+            ),
             ..Hdg::default()
         }),
     );
     say(
         b"HE",
         Data::Ths(Ths {
-            heading_deg_true: Some(heading),
+            heading_deg_true: Some(heading + yaw_deg(offset_s)),
             mode: ThsMode::Autonomous,
         }),
     );
@@ -78,6 +82,27 @@ fn second_with(offset_s: i64, lead_deg: f64) -> Vec<u8> {
         }),
     );
     out
+}
+
+/// Yaw about the course, which cancels out in ten seconds.
+fn yaw_deg(offset_s: i64) -> f64 {
+    0.8 * (std::f64::consts::TAU * offset_s as f64 / 10.0).sin()
+}
+
+/// Noise of the compass: the gyro has none of it.
+fn noise_deg(offset_s: i64) -> f64 {
+    let slow = share(offset_s / 20) - 0.5;
+    let sign = if offset_s % 2 == 0 { 1.0 } else { -1.0 };
+    NOISE_DEG * (slow + sign * share(offset_s / 2))
+}
+
+/// A share of one that looks random.
+fn share(number: i64) -> f64 {
+    let hash = number
+        .unsigned_abs()
+        .wrapping_add(1)
+        .wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    ((hash ^ (hash >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 40) as f64 / (1_u64 << 24) as f64
 }
 
 /// Heading at a time; it changes at once at the full hour.

@@ -155,6 +155,7 @@ impl AlertMonitor {
         }
         let corrected = predict(CorrectionInputs {
             compass: CompassHeading::new(window.compass_deg),
+            compass_is_mixed: false,
             position: Some(window.position),
             time: Some(now),
             model: Some(model),

@@ -84,6 +84,7 @@ impl Ship {
             let position = Position::new(43.5, -3.0).unwrap();
             let reading = CompassHeading::new(heading_deg);
             let right = predict(CorrectionInputs {
+                compass_is_mixed: false,
                 compass: reading,
                 position: Some(position),
                 time: end_of(START),

@@ -1,0 +1,279 @@
+//! Pairs of compass and reference, one by one and as means.
+//!
+//! A copy of the compass comes late, now more and now less. One by one it is some reading of the
+//! last moments, to its digits: where a compass is read once a second or the ship yaws much, that
+//! shows. Where it is read often, any of its readings may be the one, and only means show that the
+//! two never part. An independent instrument differs either way.
+
+use binnacle_analysis::fit::{HeadingPair, SharedNoise, weigh_independence};
+use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation, wrap_180, wrap_360};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
+use std::collections::{BTreeMap, VecDeque};
+
+/// Delay of a copy, seconds, within which a reading of the compass may be its original.
+const DELAY_S: f64 = 0.6;
+/// Least and greatest number of such readings.
+const CANDIDATES: std::ops::RangeInclusive<usize> = 2..=12;
+/// Readings of the reference in a mean, one a second: a copy's delays cancel out to some hundredths
+/// of a degree, while those of a compass and a gyro leave twice as much at least.
+const READINGS_OF_MEAN: usize = 20;
+/// Readings from one mean to the next. Means that overlap are not counted twice: what counts is
+/// the number of headings.
+const READINGS_TO_NEXT: usize = 10;
+/// Interval of the readings of the reference that count, seconds.
+const INTERVAL_S: f64 = 1.0;
+/// Longest gap within a mean, seconds.
+const MAX_GAP_S: f64 = 3.0;
+/// Differences from which the usual one follows.
+const DIFFERENCES: usize = 15;
+/// Pairs that are kept of each degree of heading, enough for a decision on one course, and of all.
+const PAIRS_OF_SECTOR: usize = 60;
+const MAX_PAIRS: usize = 600;
+/// Age of the oldest pair, seconds: another device may take the reference's place.
+const MAX_AGE_S: f64 = 3_600.0;
+/// New means after which all are weighed, before and after a decision.
+const FIRST_MEANS: u32 = 5;
+const NEXT_MEANS: u32 = 30;
+
+/// Time and place of a reading.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Circumstances {
+    pub(super) time: Timestamp,
+    pub(super) position: Position,
+    pub(super) variation: Variation,
+}
+
+/// Latest readings of the compass.
+#[derive(Debug, Default)]
+pub(super) struct RecentCompass {
+    readings: VecDeque<CompassHeading>,
+    /// Readings since the clock advanced, and in the second before.
+    in_second: usize,
+    in_last_second: usize,
+    advanced: Option<Timestamp>,
+}
+
+impl RecentCompass {
+    /// Applies the present time.
+    pub(super) fn advance(&mut self, now: Timestamp) {
+        let passed_s = self.advanced.map(|last| now.seconds_since(last));
+        if passed_s.is_some_and(|passed_s| (0.0..INTERVAL_S).contains(&passed_s)) {
+            return;
+        }
+        self.advanced = Some(now);
+        self.in_last_second = std::mem::take(&mut self.in_second);
+        // A compass that is read no more makes no pair.
+        if self.in_last_second == 0 || passed_s.is_some_and(|passed_s| passed_s > MAX_GAP_S) {
+            self.readings.clear();
+        }
+    }
+
+    /// Adds a reading.
+    pub(super) fn add(&mut self, compass: CompassHeading) {
+        self.in_second += 1;
+        if self.readings.len() == *CANDIDATES.end() {
+            self.readings.pop_front();
+        }
+        self.readings.push_back(compass);
+    }
+
+    /// Returns the readings that a copy may repeat, the latest first.
+    fn candidates(&self) -> impl Iterator<Item = CompassHeading> {
+        let rate = self.in_last_second.max(self.in_second) as f64;
+        let count = ((DELAY_S * rate) as usize).clamp(*CANDIDATES.start(), *CANDIDATES.end());
+        self.readings.iter().rev().take(count).copied()
+    }
+}
+
+/// Pairs of one reference.
+#[derive(Debug, Default)]
+pub(super) struct ReferencePairs {
+    singles: Sectors<Single>,
+    means: Sectors<HeadingPair>,
+    latest: VecDeque<HeadingPair>,
+    paired: Option<Timestamp>,
+    differences_deg: VecDeque<f64>,
+    new_means: u32,
+}
+
+/// Reading of the reference with the latest reading of the compass, and with the nearest.
+#[derive(Clone, Copy, Debug)]
+struct Single {
+    latest: HeadingPair,
+    nearest: HeadingPair,
+    log_choices: f64,
+}
+
+impl ReferencePairs {
+    /// Adds a reading of the reference.
+    pub(super) fn add(
+        &mut self,
+        reference: TrueHeading,
+        compass: &RecentCompass,
+        at: Circumstances,
+    ) {
+        let is_soon = self
+            .paired
+            .is_some_and(|paired| (0.0..INTERVAL_S).contains(&at.time.seconds_since(paired)));
+        let Some(latest) = compass.candidates().next().filter(|_| !is_soon) else {
+            return;
+        };
+        self.paired = Some(at.time);
+        let pair = |compass| HeadingPair {
+            time: Some(at.time),
+            position: Some(at.position),
+            compass,
+            reference,
+            variation: at.variation,
+            sog_kn: None,
+        };
+        let apart = |compass: CompassHeading| wrap_180(reference.degrees() - compass.degrees());
+        let usual_deg = self.usual_difference(apart(latest));
+        let off = |compass: &CompassHeading| wrap_180(apart(*compass) - usual_deg).abs();
+        let nearest = compass
+            .candidates()
+            .min_by(|a, b| off(a).total_cmp(&off(b)));
+        let single = Single {
+            latest: pair(latest),
+            nearest: pair(nearest.unwrap_or(latest)),
+            log_choices: (compass.candidates().count() as f64).ln(),
+        };
+        self.singles.add(single);
+        self.add_to_mean(pair(middle(compass.candidates(), latest)), at.time);
+    }
+
+    /// Returns whether the pairs are to be weighed.
+    pub(super) fn is_due(&self, is_decided: bool) -> bool {
+        let enough = if is_decided { NEXT_MEANS } else { FIRST_MEANS };
+        self.new_means >= enough
+    }
+
+    /// Weighs the pairs one by one, and the means; none where there are too few.
+    pub(super) fn weigh(&mut self, now: Timestamp) -> Option<(SharedNoise, SharedNoise)> {
+        self.new_means = 0;
+        self.singles.forget(now);
+        self.means.forget(now);
+        let means = weigh_independence(&self.means.all().copied().collect::<Vec<_>>())?;
+        let latest: Vec<_> = self.singles.all().map(|single| single.latest).collect();
+        let nearest: Vec<_> = self.singles.all().map(|single| single.nearest).collect();
+        let log_choices: f64 = self.singles.all().map(|single| single.log_choices).sum();
+        let mean_log_choices = log_choices / latest.len().max(1) as f64;
+        let latest = weigh_independence(&latest)?;
+        let single = weigh_independence(&nearest)?.of_choice(latest, mean_log_choices);
+        Some((single, means))
+    }
+
+    /// Returns the middle of the latest differences.
+    fn usual_difference(&mut self, difference_deg: f64) -> f64 {
+        if self.differences_deg.len() == DIFFERENCES {
+            self.differences_deg.pop_front();
+        }
+        self.differences_deg.push_back(difference_deg);
+        let apart = |difference: &f64| wrap_180(difference - difference_deg);
+        let mut sorted: Vec<f64> = self.differences_deg.iter().map(apart).collect();
+        sorted.sort_by(f64::total_cmp);
+        difference_deg + sorted[sorted.len() / 2]
+    }
+
+    fn add_to_mean(&mut self, pair: HeadingPair, time: Timestamp) {
+        let last = self.latest.back().and_then(|last| last.time);
+        if last.is_some_and(|last| time.seconds_since(last).abs() > MAX_GAP_S) {
+            self.latest.clear();
+        }
+        self.latest.push_back(pair);
+        if self.latest.len() < READINGS_OF_MEAN {
+            return;
+        }
+        let mean = mean(&self.latest, pair);
+        self.latest.drain(..READINGS_TO_NEXT);
+        self.means.add(mean);
+        self.new_means += 1;
+    }
+}
+
+/// Returns the means of compass and reference, about one of the pairs.
+fn mean(pairs: &VecDeque<HeadingPair>, about: HeadingPair) -> HeadingPair {
+    let count = pairs.len() as f64;
+    let mean_of = |heading: fn(&HeadingPair) -> f64| {
+        let offs = pairs
+            .iter()
+            .map(|pair| wrap_180(heading(pair) - heading(&about)));
+        heading(&about) + offs.sum::<f64>() / count
+    };
+    let compass = CompassHeading::new(mean_of(|pair| pair.compass.degrees()));
+    let reference = TrueHeading::new(mean_of(|pair| pair.reference.degrees()));
+    HeadingPair {
+        compass: compass.unwrap_or(about.compass),
+        reference: reference.unwrap_or(about.reference),
+        ..about
+    }
+}
+
+/// Returns the mean of readings about one of them.
+fn middle(readings: impl Iterator<Item = CompassHeading>, about: CompassHeading) -> CompassHeading {
+    let (sum, count) = readings.fold((0.0, 0.0), |(sum, count), reading| {
+        let off = wrap_180(reading.degrees() - about.degrees());
+        (sum + off, count + 1.0)
+    });
+    let mean = wrap_360(about.degrees() + if count > 0.0 { sum / count } else { 0.0 });
+    CompassHeading::new(mean).unwrap_or(about)
+}
+
+/// Pairs by degree of compass heading, so that a steady course does not displace the others.
+#[derive(Debug)]
+struct Sectors<T>(BTreeMap<i64, VecDeque<T>>);
+
+impl<T> Default for Sectors<T> {
+    fn default() -> Sectors<T> {
+        Sectors(BTreeMap::new())
+    }
+}
+
+trait Paired {
+    fn pair(&self) -> &HeadingPair;
+}
+
+impl Paired for Single {
+    fn pair(&self) -> &HeadingPair {
+        &self.latest
+    }
+}
+
+impl Paired for HeadingPair {
+    fn pair(&self) -> &HeadingPair {
+        self
+    }
+}
+
+impl<T: Paired> Sectors<T> {
+    fn add(&mut self, item: T) {
+        let sector = item.pair().compass.degrees() as i64;
+        let items = self.0.entry(sector).or_default();
+        if items.len() == PAIRS_OF_SECTOR {
+            items.pop_front();
+        }
+        items.push_back(item);
+    }
+
+    fn all(&self) -> impl Iterator<Item = &T> {
+        self.0.values().flatten()
+    }
+
+    /// Forgets what is old, and the oldest where there is too much.
+    fn forget(&mut self, now: Timestamp) {
+        let age_s = |item: &T| {
+            let time = item.pair().time;
+            time.map_or(f64::INFINITY, |time| now.seconds_since(time))
+        };
+        let mut ages: Vec<f64> = self.all().map(age_s).collect();
+        ages.sort_by(f64::total_cmp);
+        let oldest_s = ages
+            .get(MAX_PAIRS)
+            .map_or(MAX_AGE_S, |age_s| age_s.min(MAX_AGE_S));
+        for items in self.0.values_mut() {
+            items.retain(|item| age_s(item) <= oldest_s);
+        }
+        self.0.retain(|_, items| !items.is_empty());
+    }
+}

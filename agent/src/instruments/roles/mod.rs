@@ -1,0 +1,369 @@
+//! Roles: selection of one source per instrument, such as *the* gyro among several.
+//!
+//! The selections of a role are ranked. One is used while no better one has been heard within the
+//! silence limit; the better one is used again with its next reading. An instrument that reports
+//! itself invalid counts as silent. A true heading of the device that serves as the compass is made
+//! of the compass, and is no reference.
+
+use super::gnss_clock::{GnssClock, Step};
+use super::observation::{Observation, Reading};
+use super::role::{Moment, Role, Use};
+use super::source::Source;
+use crate::config::{RolesConfig, SilenceConfig};
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::SourceId;
+use binnacle_compass::time::Timestamp;
+use std::time::Duration;
+use tokio::time::Instant;
+
+/// Refused sources that are remembered.
+const MAX_REFUSED: usize = 16;
+
+/// Signal of an instrument, whichever source it came from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Signal {
+    /// Time advanced.
+    Time(Timestamp),
+    /// Time jumped.
+    Jump(Timestamp),
+    /// Raw compass.
+    Compass(CompassHeading),
+    /// Gyro.
+    Gyro(ReferenceHeading),
+    /// Gyro reports itself invalid.
+    GyroInvalid,
+    /// Satellite compass.
+    Satellite(ReferenceHeading),
+    /// Satellite compass reports itself invalid.
+    SatelliteInvalid,
+    /// A heading that must not be used.
+    Refused(Instrument, Refusal),
+    /// Fix.
+    Position(Position),
+    /// Speed over ground, knots.
+    Speed(f64),
+    /// Course over ground.
+    Course(CourseOverGround),
+    /// Degrees per minute, starboard positive.
+    RateOfTurn(f64),
+    /// Degrees, starboard down positive.
+    Roll(f64),
+    /// Degrees Celsius.
+    Temperature(f64),
+}
+
+/// Instrument that gives a heading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Instrument {
+    Compass,
+    Gyro,
+    Satellite,
+}
+
+/// Reason why a heading must not be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Refusal {
+    /// It is made of the compass.
+    NotIndependent,
+    /// It is not yet shown to be another instrument's than the compass.
+    Unproven,
+    /// It comes from two sensors that read differently.
+    TwoSensors,
+}
+
+/// Heading of a reference, and the source that gave it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ReferenceHeading {
+    pub(crate) heading: TrueHeading,
+    pub(crate) source: SourceId,
+}
+
+/// The vessel's instruments and its clock.
+#[derive(Debug)]
+pub(crate) struct Roles {
+    compass: Role,
+    gyro: Role,
+    satellite: Role,
+    position: Role,
+    rate_of_turn: Role,
+    roll: Role,
+    temperature: Role,
+    clock: GnssClock,
+    /// References of the compass's own device, by role, when they were last heard.
+    refused: Vec<(&'static str, Source, Instant)>,
+}
+
+impl Roles {
+    /// Creates the configured roles.
+    pub(crate) fn new(config: &RolesConfig, silence: &SilenceConfig) -> Roles {
+        let position_s = silence.stale_s(silence.position.sampling());
+        let compass_s = silence.stale_s(silence.compass.sampling());
+        let sampled = |role| silence.stale_s(role);
+        Roles {
+            compass: Role::new("compass", &config.compass, compass_s),
+            gyro: Role::new("gyro", &config.gyro, sampled(silence.gyro)),
+            satellite: Role::new("satellite", &config.satellite, sampled(silence.satellite)),
+            position: Role::new("position", &config.position, position_s),
+            rate_of_turn: Role::new(
+                "rate_of_turn",
+                &config.rate_of_turn,
+                sampled(silence.rate_of_turn),
+            ),
+            roll: Role::new("roll", &config.roll, sampled(silence.roll)),
+            temperature: Role::new(
+                "temperature",
+                &config.temperature,
+                sampled(silence.temperature),
+            ),
+            // A recording's own time stamps rank behind every receiver.
+            clock: GnssClock::new(config.position.len() + 1, position_s),
+            refused: Vec::new(),
+        }
+    }
+
+    /// Returns GNSS time, once it is known.
+    pub(crate) fn now(&self) -> Option<Timestamp> {
+        self.clock.now()
+    }
+
+    /// Returns GNSS time unless it is uncertain.
+    pub(crate) fn reliable_time(&self) -> Option<Timestamp> {
+        self.clock.now().filter(|_| !self.clock.is_uncertain())
+    }
+
+    /// Returns the clock, to set its references.
+    pub(crate) fn clock(&mut self) -> &mut GnssClock {
+        &mut self.clock
+    }
+
+    /// Describes the fault of the receiver's time.
+    pub(crate) fn clock_problem(&self) -> Option<String> {
+        self.clock.problem()
+    }
+
+    /// Describes sources that must not be used as they are configured.
+    pub(crate) fn problems(&self, now: Instant, heard_within: Duration) -> Vec<String> {
+        let moment = self.moment(now, Duration::ZERO);
+        let mixed = self.roles().flat_map(|role| role.problems(moment));
+        let recent = self
+            .refused
+            .iter()
+            .filter(|(_, _, heard)| now.saturating_duration_since(*heard) <= heard_within);
+        let refused = recent.map(|(role, source, _)| {
+            format!("{role}: {source} is of the compass's own device, and no reference for it")
+        });
+        mixed.chain(refused).collect()
+    }
+
+    /// Returns the roles that a source matches, and whether it serves in each.
+    pub(crate) fn uses(&self, seen: &Observation) -> Vec<(&'static str, bool)> {
+        self.roles()
+            .filter(|role| role.rank(seen).is_some())
+            .map(|role| (role.name(), role.has_served(&seen.source)))
+            .collect()
+    }
+
+    fn roles(&self) -> impl Iterator<Item = &Role> {
+        [
+            &self.compass,
+            &self.gyro,
+            &self.satellite,
+            &self.position,
+            &self.rate_of_turn,
+            &self.roll,
+            &self.temperature,
+        ]
+        .into_iter()
+    }
+
+    fn moment(&self, measured: Instant, age: Duration) -> Moment {
+        Moment {
+            ship: self.clock.now(),
+            measured,
+            age,
+        }
+    }
+
+    /// Applies the time that a recording gives a line: used when no receiver gives any.
+    pub(crate) fn observe_recorded_time(&mut self, stamp: Timestamp) -> Option<Signal> {
+        self.set_clock(self.position.source_count(), stamp)
+    }
+
+    /// Returns the signals of an observation of some age on arrival: none when its source has no
+    /// role, or when a better source is alive.
+    pub(crate) fn observe(
+        &mut self,
+        seen: &Observation,
+        measured: Instant,
+        age: Duration,
+    ) -> [Option<Signal>; 3] {
+        let moment = self.moment(measured, age);
+        match seen.reading {
+            Reading::Compass { raw, .. } => self.compass_heading(seen, moment, raw),
+            Reading::Magnetic { heading, .. } => match CompassHeading::new(heading.degrees()) {
+                Some(raw) => self.compass_heading(seen, moment, raw),
+                None => single(None),
+            },
+            Reading::True(heading) => single(self.true_heading(seen, moment, heading)),
+            Reading::TrueNotValid => {
+                if self.gyro.note_invalid(seen, moment) {
+                    return single(Some(Signal::GyroInvalid));
+                }
+                let used = self.satellite.note_invalid(seen, moment);
+                single(used.then_some(Signal::SatelliteInvalid))
+            }
+            Reading::Fix {
+                position,
+                time,
+                sog_kn,
+            } => self.fix(seen, moment, position, time, sog_kn),
+            Reading::Time(stamp) => {
+                let rank = self.position.device_rank(&seen.source);
+                let rank = rank.filter(|_| self.position.is_recent(moment));
+                single(rank.and_then(|rank| self.set_clock(rank, stamp)))
+            }
+            Reading::Speed { sog_kn } => single(
+                self.is_from_receiver(seen, moment)
+                    .then_some(Signal::Speed(sog_kn)),
+            ),
+            Reading::Course(course) => single(
+                self.is_from_receiver(seen, moment)
+                    .then_some(Signal::Course(course)),
+            ),
+            Reading::RateOfTurn { deg_min } => {
+                let used = self.rate_of_turn.note_reading(seen, moment).source();
+                single(used.map(|_| Signal::RateOfTurn(deg_min)))
+            }
+            Reading::Roll { deg } => {
+                let used = self.roll.note_reading(seen, moment).source();
+                single(used.map(|_| Signal::Roll(deg)))
+            }
+            Reading::Temperature { celsius } => {
+                let used = self.temperature.note_reading(seen, moment).source();
+                single(used.map(|_| Signal::Temperature(celsius)))
+            }
+            Reading::Pitch { .. } | Reading::Greeting(_) => single(None),
+        }
+    }
+
+    fn compass_heading(
+        &mut self,
+        seen: &Observation,
+        moment: Moment,
+        raw: CompassHeading,
+    ) -> [Option<Signal>; 3] {
+        single(
+            match self.compass.note_heading(seen, moment, raw.degrees()) {
+                Use::None => None,
+                Use::Used(_) => Some(Signal::Compass(raw)),
+                Use::Mixed => Some(Signal::Refused(Instrument::Compass, Refusal::TwoSensors)),
+            },
+        )
+    }
+
+    fn true_heading(
+        &mut self,
+        seen: &Observation,
+        moment: Moment,
+        heading: TrueHeading,
+    ) -> Option<Signal> {
+        let is_of_compass = seen.source.names_device() && self.compass.has_served(&seen.source);
+        for (role, instrument) in [
+            (&mut self.gyro, Instrument::Gyro),
+            (&mut self.satellite, Instrument::Satellite),
+        ] {
+            if is_of_compass {
+                if role.rank(seen).is_none() {
+                    continue;
+                }
+                note_refused(
+                    &mut self.refused,
+                    role.name(),
+                    &seen.source,
+                    moment.measured,
+                );
+                // Another source may serve.
+                return (!role.is_served(moment))
+                    .then_some(Signal::Refused(instrument, Refusal::NotIndependent));
+            }
+            let reference = |source| ReferenceHeading { heading, source };
+            match role.note_heading(seen, moment, heading.degrees()) {
+                Use::None => {}
+                Use::Mixed => return Some(Signal::Refused(instrument, Refusal::TwoSensors)),
+                Use::Used(source) if instrument == Instrument::Gyro => {
+                    return Some(Signal::Gyro(reference(source)));
+                }
+                Use::Used(source) => return Some(Signal::Satellite(reference(source))),
+            }
+        }
+        None
+    }
+
+    /// Returns whether a reading comes from the receiver whose position is used.
+    fn is_from_receiver(&self, seen: &Observation, moment: Moment) -> bool {
+        let rank = self.position.device_rank(&seen.source);
+        self.position.is_recent(moment)
+            && rank.is_some_and(|rank| self.position.is_best(rank, moment))
+    }
+
+    fn fix(
+        &mut self,
+        seen: &Observation,
+        moment: Moment,
+        position: Position,
+        time: Option<Timestamp>,
+        sog_kn: Option<f64>,
+    ) -> [Option<Signal>; 3] {
+        let Some(rank) = self
+            .position
+            .rank(seen)
+            .filter(|_| self.position.is_recent(moment))
+        else {
+            return single(None);
+        };
+        // Time first: the fix belongs to the time it carries.
+        let time = time.and_then(|stamp| self.set_clock(rank, stamp));
+        let moment = self.moment(moment.measured, moment.age);
+        let used = self.position.note_reading(seen, moment).source();
+        if used.is_none() {
+            return single(time);
+        }
+        [
+            time,
+            Some(Signal::Position(position)),
+            sog_kn.map(Signal::Speed),
+        ]
+    }
+
+    fn set_clock(&mut self, rank: usize, stamp: Timestamp) -> Option<Signal> {
+        match self.clock.observe(rank, stamp) {
+            Step::Held => None,
+            Step::Advanced(now) => Some(Signal::Time(now)),
+            Step::Jumped(now) => Some(Signal::Jump(now)),
+        }
+    }
+}
+
+fn note_refused(
+    refused: &mut Vec<(&'static str, Source, Instant)>,
+    role: &'static str,
+    source: &Source,
+    heard: Instant,
+) {
+    let known = refused
+        .iter()
+        .position(|(known_role, known, _)| *known_role == role && known == source);
+    match known {
+        Some(known) => refused[known].2 = heard,
+        None if refused.len() < MAX_REFUSED => refused.push((role, source.clone(), heard)),
+        None => {}
+    }
+}
+
+fn single(signal: Option<Signal>) -> [Option<Signal>; 3] {
+    [signal, None, None]
+}
+
+#[cfg(test)]
+mod tests;
