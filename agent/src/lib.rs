@@ -13,6 +13,7 @@ mod instruments;
 
 mod acquisition;
 mod alert;
+mod discovery;
 mod sampler;
 mod weak_field;
 

@@ -1,9 +1,10 @@
-//! Commands: `run`, `status`, `enrol`, `rotate-token`, `hold`, `export`, `replay`.
+//! Commands: `run`, `status`, `discover`, `enrol`, `rotate-token`, `hold`, `export`, `replay`.
 //!
 //! Exit code 2 and one line for a mistake in the user's input, 1 for every other failure.
 
 mod bad_input;
 mod configuration;
+mod discover;
 mod enrolment;
 mod local_agent;
 mod recordings;
@@ -16,6 +17,7 @@ use anyhow::Context;
 use bad_input::BadInput;
 use clap::{Parser, Subcommand, ValueEnum};
 use configuration::load;
+use discover::discover;
 use enrolment::{enrol, rotate_token};
 use local_agent::{set_exclusion, status};
 use recordings::{export, parse_time, replay};
@@ -23,6 +25,7 @@ use signals::stop_on_signals;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 use tokio_util::sync::CancellationToken;
 
 /// Binnacle's shipboard agent: sends settled compass headings to the server and puts the corrected
@@ -50,6 +53,20 @@ enum Command {
         /// Configuration file.
         #[arg(long, default_value = "agent.toml")]
         config: PathBuf,
+        /// Prints JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Lists every source that is heard, with its rate and last value, and proposes `[roles]`.
+    ///
+    /// The list is written as comments, so that the output can be added to the configuration.
+    Discover {
+        /// Configuration file with the `[inputs]`.
+        #[arg(long, default_value = "agent.toml")]
+        config: PathBuf,
+        /// Seconds to listen; recordings are read to their end.
+        #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=86_400))]
+        seconds: u32,
         /// Prints JSON.
         #[arg(long)]
         json: bool,
@@ -175,6 +192,14 @@ fn execute(command: Command) -> anyhow::Result<()> {
                 run::run(config, shutdown).await
             }
             Command::Status { config, json } => status(&load(&config)?, json).await,
+            Command::Discover {
+                config,
+                seconds,
+                json,
+            } => {
+                let listen = Duration::from_secs(seconds.into());
+                discover(load(&config)?, listen, json).await
+            }
             Command::Enrol {
                 server,
                 code,
