@@ -21,6 +21,12 @@ const LEAST_SCATTERS: f64 = 10.0;
 /// Least number of jumps: five single readings that are off, to and fro. By chance there are as
 /// many in less than one of a billion sets of readings.
 const JUMPS: usize = 10;
+/// Standard deviations by which each half of the readings must alternate: by chance one of ten
+/// million halves does.
+const ALTERNATION_SD: f64 = 5.0;
+/// Standard error of the mean in units of that of independent values: of white noise the differences
+/// from the neighbours have 1.22 standard deviations, and their signed sum that of 2.
+const ALTERNATION_ERROR: f64 = 1.64;
 /// Greatest spread of the jumps, as a share of their mean.
 const SPREAD: f64 = 0.25;
 
@@ -56,6 +62,37 @@ impl TwoSensors {
         if self.readings.len() < READINGS {
             return None;
         }
+        self.alternation().or_else(|| self.jumps())
+    }
+
+    /// Returns the difference of sensors that take turns, however the ship yaws.
+    ///
+    /// Each reading is compared with the middle of its neighbours, every other one with the
+    /// opposite sign: motion cancels out, and what remains is the difference.
+    fn alternation(&self) -> Option<f64> {
+        let least_deg = LEAST_DEG.max(LEAST_DIGITS * self.digit_deg());
+        let at = |place: usize| self.readings[place];
+        let signed = |place: usize| {
+            let before = wrap_180(at(place) - at(place - 1));
+            let after = wrap_180(at(place) - at(place + 1));
+            let sign = if place.is_multiple_of(2) { 0.5 } else { -0.5 };
+            sign * (before + after)
+        };
+        let half = |places: std::ops::Range<usize>| {
+            let count = places.len() as f64;
+            let values: Vec<f64> = places.map(signed).collect();
+            let mean = values.iter().sum::<f64>() / count;
+            let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count;
+            let error = ALTERNATION_ERROR * (variance / count).sqrt();
+            (mean.abs() >= ALTERNATION_SD * error).then_some(mean)
+        };
+        let (first, second) = (half(1..READINGS / 2)?, half(READINGS / 2..READINGS - 1)?);
+        let difference = f64::midpoint(first, second);
+        (first * second > 0.0 && difference.abs() >= least_deg).then_some(difference.abs())
+    }
+
+    /// Returns the difference of sensors of which one is read more often.
+    fn jumps(&self) -> Option<f64> {
         let at = |place: usize| self.readings[place];
         let steps: Vec<f64> = (2..READINGS)
             .map(|place| wrap_180(at(place) - at(place - 1)))
@@ -135,6 +172,23 @@ mod tests {
             let found = found.unwrap_or_default();
             assert!((found - 1.52).abs() < 0.1, "{share} {digit}: {found}");
         }
+    }
+
+    #[test]
+    fn they_are_noticed_while_the_ship_yaws() {
+        let mut rng = StdRng::seed_from_u64(3);
+        let mut detector = TwoSensors::default();
+        let found = (0..400).filter_map(|reading| {
+            let off = if reading % 2 == 0 { 1.5 } else { 0.0 };
+            let heading = ship(f64::from(reading / 2)) + off + 0.2 * noise(&mut rng);
+            detector.observe(rounded(heading, 0.1).rem_euclid(360.0))
+        });
+        let found: Vec<f64> = found.collect();
+        assert!(found.len() > 100, "{}", found.len());
+        assert!(
+            found.iter().all(|found| (found - 1.5).abs() < 0.5),
+            "{found:?}"
+        );
     }
 
     #[test]

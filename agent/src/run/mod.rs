@@ -76,6 +76,8 @@ struct Agent {
     uplink: tokio::task::JoinHandle<()>,
     unstored: Unstored,
     windows: Tally,
+    /// Problems with sources, as they were last logged.
+    source_problems: Vec<String>,
 }
 
 /// Results of the sampler that the spool does not have yet.
@@ -197,6 +199,12 @@ impl Agent {
             Err(error) => tracing::error!(%error, "the spool cannot be read"),
         }
         let status = self.build_status().await;
+        for problem in &status.source_problems {
+            if !self.source_problems.contains(problem) {
+                tracing::warn!("{problem}");
+            }
+        }
+        self.source_problems.clone_from(&status.source_problems);
         self.status.send_replace(Arc::new(status));
     }
 

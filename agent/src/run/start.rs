@@ -104,6 +104,7 @@ impl Agent {
             uplink,
             unstored,
             windows: Tally::default(),
+            source_problems: Vec::new(),
         })
     }
 }

@@ -131,6 +131,18 @@ impl Bridge {
     /// Creates a bridge whose compass is struck by lightning after `struck_s`: from then on it
     /// reads `off_deg` less than before.
     pub(crate) async fn struck(seconds: i64, struck_s: i64, off_deg: f64) -> Bridge {
+        Bridge::playing(seconds, move |offset_s| {
+            let off_deg = if offset_s < struck_s { 0.0 } else { off_deg };
+            second_with(offset_s, LEAD_DEG + off_deg)
+        })
+        .await
+    }
+
+    /// Creates a bridge that plays the given sentences of each second.
+    pub(crate) async fn playing(
+        seconds: i64,
+        say: impl Fn(i64) -> Vec<u8> + Send + 'static,
+    ) -> Bridge {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let address = listener.local_addr().unwrap();
         let begin = watch::Sender::new(false);
@@ -145,11 +157,7 @@ impl Bridge {
                         std::future::pending::<()>().await;
                     }
                     let until = seconds.min(next + 60);
-                    let say = |offset_s| {
-                        let off_deg = if offset_s < struck_s { 0.0 } else { off_deg };
-                        second_with(offset_s, LEAD_DEG + off_deg)
-                    };
-                    let minute: Vec<u8> = (next..until).flat_map(say).collect();
+                    let minute: Vec<u8> = (next..until).flat_map(&say).collect();
                     if stream.write_all(&minute).await.is_err() {
                         break;
                     }
