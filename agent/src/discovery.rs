@@ -1,4 +1,4 @@
-//! What is heard on board, and the roles that are proposed for it.
+//! Sources that are heard on board, and roles proposed for them.
 //!
 //! Nothing is guessed that would harm: a magnetic heading is a raw one only if someone says so, a
 //! compass is one and not several, and a true heading of the compass's own device is left out.

@@ -121,7 +121,9 @@ impl Reader {
         let stated = match self.source {
             Source::Live => clock,
             Source::Recording => {
-                clock.into_iter().for_each(|at| self.recorded(at));
+                if let Some(at) = clock {
+                    self.recorded(at);
+                }
                 None
             }
         };

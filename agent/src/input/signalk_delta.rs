@@ -77,7 +77,7 @@ struct Message<'a> {
 struct Update<'a> {
     #[serde(borrow, rename = "$source")]
     source_ref: Option<Cow<'a, str>>,
-    /// What the server knows of the device. It may take any form.
+    /// Description of the device, in any form.
     source: Option<Value>,
     /// Time at which the values were measured.
     #[serde(borrow)]
@@ -129,12 +129,9 @@ impl DeltaReader {
             }
             let device = self.device(update);
             let stated = update.timestamp.as_deref().map(Timestamp::parse);
-            let stated = match stated.transpose() {
-                Ok(stated) => stated,
-                Err(_) => {
-                    stats.reject("bad timestamp");
-                    continue;
-                }
+            let Ok(stated) = stated.transpose() else {
+                stats.reject("bad timestamp");
+                continue;
             };
             // A compass reading is combined with the deviation beside it.
             let (differences, others): (Vec<_>, Vec<_>) = update

@@ -2,6 +2,7 @@
 
 use super::observation::{Observation, Reading};
 use super::source::Source;
+use binnacle_nmea::n2k::Address;
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, VecDeque};
 use std::mem::discriminant;
@@ -186,7 +187,7 @@ impl HeardSource {
             source: source.signalk.as_deref().map(str::to_owned),
             sfi: source.sfi.as_deref().map(str::to_owned),
             sender: source.sender.map(|sender| sender.to_string()),
-            n2k_address: source.n2k_address.map(|address| address.number()),
+            n2k_address: source.n2k_address.map(Address::number),
             n2k_name: source.n2k_name.map(|name| name.to_string()),
             rate_hz: self.rate_hz().map(|rate| (rate * 100.0).round() / 100.0),
             last: self.last(),

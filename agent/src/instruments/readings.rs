@@ -48,14 +48,14 @@ impl Readings {
         match signal {
             Signal::Compass(value) => {
                 self.compass_intervals.note(self.compass, measured);
-                self.compass = latest(self.compass, value, measured);
+                replace(&mut self.compass, value, measured);
                 self.compass_is_mixed = false;
             }
             Signal::Gyro(ReferenceHeading { heading, .. }) => {
-                self.gyro = latest(self.gyro, heading, measured);
+                replace(&mut self.gyro, heading, measured);
             }
             Signal::Satellite(ReferenceHeading { heading, .. }) => {
-                self.satellite = latest(self.satellite, heading, measured);
+                replace(&mut self.satellite, heading, measured);
             }
             Signal::Refused(Instrument::Compass, refusal) => {
                 self.compass = None;
@@ -65,12 +65,12 @@ impl Readings {
             Signal::SatelliteInvalid | Signal::Refused(Instrument::Satellite, _) => {
                 self.satellite = None;
             }
-            Signal::Position(value) => self.position = latest(self.position, value, measured),
-            Signal::Speed(value) => self.sog_kn = latest(self.sog_kn, value, measured),
+            Signal::Position(value) => replace(&mut self.position, value, measured),
+            Signal::Speed(value) => replace(&mut self.sog_kn, value, measured),
             Signal::RateOfTurn(value) => {
-                self.rate_of_turn_deg_min = latest(self.rate_of_turn_deg_min, value, measured);
+                replace(&mut self.rate_of_turn_deg_min, value, measured);
             }
-            Signal::Roll(value) => self.roll_deg = latest(self.roll_deg, value, measured),
+            Signal::Roll(value) => replace(&mut self.roll_deg, value, measured),
             Signal::Time(_) | Signal::Jump(_) | Signal::Course(_) | Signal::Temperature(_) => {}
         }
     }
@@ -81,11 +81,10 @@ impl Readings {
     }
 }
 
-/// Returns the later of two readings: a delayed one replaces nothing newer.
-fn latest<T: Copy>(known: Option<Latest<T>>, value: T, measured: Instant) -> Option<Latest<T>> {
-    match known {
-        Some(known) if known.measured > measured => Some(known),
-        _ => Some(Latest { value, measured }),
+/// Replaces a reading by a later one: a delayed one replaces nothing newer.
+fn replace<T: Copy>(known: &mut Option<Latest<T>>, value: T, measured: Instant) {
+    if known.is_none_or(|known| known.measured <= measured) {
+        *known = Some(Latest { value, measured });
     }
 }
 

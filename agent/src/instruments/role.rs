@@ -305,6 +305,6 @@ impl Selection {
     }
 }
 
-fn is_or_any<T: PartialEq>(wanted: Option<T>, found: Option<T>) -> bool {
-    wanted.is_none() || wanted == found
+fn is_or_any<T: PartialEq + Copy>(wanted: Option<T>, found: Option<T>) -> bool {
+    wanted.is_none_or(|wanted| found == Some(wanted))
 }

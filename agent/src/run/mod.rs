@@ -49,7 +49,7 @@ pub(crate) async fn run(config: Config, shutdown: CancellationToken) -> anyhow::
 }
 
 struct Agent {
-    acquisition: Acquisition,
+    acquisition: Box<Acquisition>,
     /// Server's time of the last contact.
     last_contact: Option<Timestamp>,
     silence: SilenceConfig,

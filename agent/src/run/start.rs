@@ -81,7 +81,7 @@ impl Agent {
         let output = outputs.tcp_address.map(|address| address.to_string());
         tracing::info!(page, output, inputs = inputs.len(), "ready");
         Ok(Agent {
-            acquisition,
+            acquisition: Box::new(acquisition),
             last_contact,
             silence: config.silence,
             spool,

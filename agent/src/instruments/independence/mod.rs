@@ -8,6 +8,7 @@
 mod pairs;
 
 use super::roles::{Instrument, ReferenceHeading, Refusal, Signal};
+use binnacle_analysis::fit::SharedNoise;
 use binnacle_compass::angle::Variation;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::position::Position;
@@ -146,14 +147,10 @@ impl Reference {
         };
         let both = [single, means];
         self.verdict = match self.verdict {
-            _ if both.iter().any(|evidence| evidence.is_shared()) => Verdict::Shared,
-            Verdict::Shared if !both.iter().all(|evidence| evidence.is_independent()) => {
-                Verdict::Shared
-            }
+            _ if both.iter().any(SharedNoise::is_shared) => Verdict::Shared,
+            Verdict::Shared if !both.iter().all(SharedNoise::is_independent) => Verdict::Shared,
             Verdict::Independent => Verdict::Independent,
-            _ if both.iter().all(|evidence| evidence.favours_independence()) => {
-                Verdict::Independent
-            }
+            _ if both.iter().all(SharedNoise::favours_independence) => Verdict::Independent,
             _ => Verdict::Suspected,
         };
     }

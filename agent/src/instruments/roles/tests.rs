@@ -1,4 +1,4 @@
-//! Which source serves in which role.
+//! Sources and the roles in which they serve.
 
 use super::*;
 use crate::config::Config;
