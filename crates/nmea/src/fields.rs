@@ -227,9 +227,8 @@ fn signed(value: &[u8], side: &[u8]) -> Option<f64> {
     let degrees = decimal(value, DECIMALS)? as f64 / 1e6;
     match side {
         b"E" | b"W" if !(0.0..=180.0).contains(&degrees) => None,
-        b"E" => Some(degrees),
         b"W" if degrees > 0.0 => Some(-degrees),
-        b"W" => Some(degrees),
+        b"E" | b"W" => Some(degrees),
         _ => None,
     }
 }
