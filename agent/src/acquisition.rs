@@ -90,6 +90,13 @@ impl Acquisition {
         self.is_recorded = true;
     }
 
+    /// Sets the headings that the agent sends, by talker and sentence.
+    pub(crate) fn set_own_headings(&mut self, headings: &[([u8; 2], [u8; 3])]) {
+        let talkers = headings.iter().map(|(talker, _)| *talker).collect();
+        self.own_output = OwnOutput::new(talkers);
+        self.roles.add_own_headings(headings);
+    }
+
     /// Records a heading as it is sent to the bridge.
     pub(crate) fn note_sent(&mut self, heading: SentHeading, now: Instant) {
         self.own_output.note_sent(heading, now);

@@ -18,7 +18,7 @@ pub(crate) use alert::AlertConfig;
 pub(crate) use alert::GyroError;
 pub(crate) use error::ConfigError;
 pub(crate) use input::{Group, HostPort, InputConfig, SignalKUrl};
-pub(crate) use output::{OutputConfig, SerialConfig};
+pub(crate) use output::{OutputConfig, SentenceConfig, SerialConfig};
 #[cfg(test)]
 pub(crate) use profile::max_burst_batch_bytes;
 pub(crate) use profile::{ConnectionPolicy, Profile, UploadPlan};
@@ -180,6 +180,10 @@ stale_s = 15
         assert_eq!(example.silence.steering_s, bare.silence.steering_s);
         assert_eq!(example.output.interval_s, bare.output.interval_s);
         assert_eq!(example.output.alarm_sentence, bare.output.alarm_sentence);
+        assert_eq!(example.output.talker, bare.output.talker);
+        assert_eq!(example.output.hdg, bare.output.hdg);
+        assert_eq!(example.output.ths, bare.output.ths);
+        assert_eq!(example.output.hdt, bare.output.hdt);
         assert_eq!(example.alert.gyro_error_deg, bare.alert.gyro_error_deg);
         assert_eq!(example.alert.settled_s, bare.alert.settled_s);
     }

@@ -27,6 +27,8 @@ pub(super) struct Role {
     stale_s: f64,
     /// Devices that have served, in the order of their first readings.
     served: Vec<Source>,
+    /// Headings that the agent itself sends.
+    own_headings: Vec<([u8; 2], [u8; 3])>,
 }
 
 /// Moment of an observation, by both clocks.
@@ -92,7 +94,17 @@ impl Role {
             selections: selections.collect(),
             stale_s,
             served: Vec::new(),
+            own_headings: vec![(AGENT_TALKER, *b"HDG"), (AGENT_TALKER, *b"THS")],
         }
+    }
+
+    /// Adds headings that the agent itself sends. Of another talker than the usual one they may
+    /// be an instrument's as well: those are known by their content alone.
+    pub(super) fn add_own_headings(&mut self, headings: &[([u8; 2], [u8; 3])]) {
+        let own = headings
+            .iter()
+            .filter(|(talker, _)| *talker == AGENT_TALKER);
+        self.own_headings.extend(own);
     }
 
     /// Returns the number of selections.
@@ -226,7 +238,7 @@ impl Role {
     pub(super) fn rank(&self, seen: &Observation) -> Option<usize> {
         self.selections
             .iter()
-            .position(|selection| selection.matches(seen))
+            .position(|selection| selection.matches(seen, &self.own_headings))
     }
 
     /// Returns the rank of the selection of the same device: ZDA and VTG come from the receiver
@@ -267,7 +279,7 @@ enum Choice {
 }
 
 impl Selection {
-    fn matches(&self, seen: &Observation) -> bool {
+    fn matches(&self, seen: &Observation, own_headings: &[([u8; 2], [u8; 3])]) -> bool {
         let source = &seen.source;
         if self
             .config
@@ -278,9 +290,7 @@ impl Selection {
         }
         // Without a configured talker, the agent's own output is excluded: on a shared line a dead
         // compass would live on as its echo.
-        if self.config.talker.is_none()
-            && source.talker == AGENT_TALKER
-            && matches!(&source.sentence, b"HDG" | b"THS")
+        if self.config.talker.is_none() && own_headings.contains(&(source.talker, source.sentence))
         {
             return false;
         }

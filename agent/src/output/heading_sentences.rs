@@ -1,18 +1,26 @@
 //! The corrected heading as sentences for autopilots and repeaters.
 //!
 //! `HDG` carries the raw reading with deviation and variation filled in, `THS` the true heading in
-//! mode E, and `$PBINQ` their quality: `$PBINQ,status,model version,age in days,standard error in
-//! degrees*hh`.
+//! mode E, `HDT` the true heading without a mode, and `$PBINQ` their quality: `$PBINQ,status,model
+//! version,age in days,standard error in degrees*hh`.
 //!
-//! The talker is `II`, not `HC`: an agent that receives its own output must not take it for the
-//! compass. An unknown value is an empty field, and THS then has mode V.
+//! While the corrected heading is withheld, nothing can be read as a heading: THS has mode V, HDG
+//! has no reading, and HDT is not sent.
+//!
+//! The usual talker is `II`, not `HC`: an agent that receives its own output must not take it for
+//! the compass.
 
 use super::framing::frame_sentence;
+use crate::config::OutputConfig;
 use crate::corrected_heading::CorrectedHeading;
-use crate::instruments::AGENT_TALKER;
 use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation};
-use binnacle_nmea::sentence::{Hdg, Ths, ThsMode};
+use binnacle_nmea::sentence::{Hdg, Hdt, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, write};
+use std::time::Duration;
+use tokio::time::Instant;
+
+/// Longest time until receivers hear that a heading is withheld.
+const LONGEST_TICK: Duration = Duration::from_millis(500);
 
 /// Quality of the model behind a heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,44 +31,131 @@ pub(crate) struct Quality {
     pub(crate) age_days: f64,
 }
 
-/// Returns HDG, THS and PBINQ, each with its line end.
-pub(crate) fn heading_sentences(corrected: &CorrectedHeading, quality: Option<Quality>) -> Vec<u8> {
-    let mut out = Vec::with_capacity(128);
-    let hdg = Hdg {
+/// Sentences that are sent, each at its own interval.
+#[derive(Debug)]
+pub(crate) struct HeadingSentences {
+    hdg: Option<Schedule>,
+    ths: Option<Schedule>,
+    hdt: Option<Schedule>,
+    quality: Schedule,
+    was_withheld: bool,
+}
+
+/// Talker and interval of a sentence.
+#[derive(Clone, Copy, Debug)]
+struct Schedule {
+    talker: [u8; 2],
+    interval: Duration,
+    sent: Option<Instant>,
+}
+
+impl HeadingSentences {
+    /// Creates the configured sentences.
+    pub(crate) fn new(config: &OutputConfig) -> HeadingSentences {
+        let schedule = |own: crate::config::SentenceConfig| Schedule {
+            talker: own.talker.unwrap_or(config.talker),
+            interval: own.interval_s.unwrap_or(config.interval_s).duration(),
+            sent: None,
+        };
+        let if_on = |own: crate::config::SentenceConfig| own.is_on.then(|| schedule(own));
+        HeadingSentences {
+            hdg: if_on(config.hdg),
+            ths: if_on(config.ths),
+            hdt: if_on(config.hdt),
+            quality: schedule(crate::config::SentenceConfig::default()),
+            was_withheld: false,
+        }
+    }
+
+    /// Returns the interval at which [`HeadingSentences::due`] is to be asked.
+    pub(crate) fn tick(&self) -> Duration {
+        let own = [self.hdg, self.ths, self.hdt, Some(self.quality)];
+        let shortest = own.into_iter().flatten().map(|schedule| schedule.interval);
+        shortest.fold(LONGEST_TICK, Duration::min)
+    }
+
+    /// Returns the sentences that are due, each with its line end. A heading that has just been
+    /// withheld is not valid at once, whatever the intervals.
+    pub(crate) fn due(
+        &mut self,
+        corrected: &CorrectedHeading,
+        quality: Option<Quality>,
+        now: Instant,
+    ) -> Vec<u8> {
+        let is_withheld = corrected.true_deg.is_none();
+        let at_once = is_withheld && !std::mem::replace(&mut self.was_withheld, is_withheld);
+        self.was_withheld = is_withheld;
+        let tick = self.tick();
+        let mut out = Vec::with_capacity(128);
+        let mut say = |schedule: Option<&mut Schedule>, data: Option<Data>| {
+            let (Some(schedule), Some(data)) = (schedule, data) else {
+                return;
+            };
+            if schedule.is_due(tick, at_once, now) {
+                let talker = schedule.talker;
+                write(&Sentence { talker, data }, &mut out);
+            }
+        };
+        say(self.hdg.as_mut(), Some(hdg(corrected)));
+        say(self.ths.as_mut(), Some(ths(corrected)));
+        say(self.hdt.as_mut(), hdt(corrected));
+        if self.quality.is_due(tick, at_once, now) {
+            write_quality(corrected, quality, &mut out);
+        }
+        out
+    }
+}
+
+impl Schedule {
+    /// Returns whether the sentence is to be sent, and notes it.
+    fn is_due(&mut self, tick: Duration, at_once: bool, now: Instant) -> bool {
+        let is_due = self.sent.is_none_or(|sent| {
+            // Ticks come a little early or late.
+            now.saturating_duration_since(sent) + tick / 2 >= self.interval
+        });
+        if is_due || at_once {
+            self.sent = Some(now);
+        }
+        is_due || at_once
+    }
+}
+
+fn hdg(corrected: &CorrectedHeading) -> Data {
+    let is_withheld = corrected.true_deg.is_none();
+    Data::Hdg(Hdg {
+        // Without a deviation, a receiver would take the raw reading for the magnetic heading.
         reading_deg: corrected
             .compass_deg
+            .filter(|_| !is_withheld)
             .map(CompassHeading::degrees)
             .map(tenth),
         deviation_deg_east: corrected
             .deviation_deg
-            // A receiver would add it.
-            .filter(|_| corrected.magnetic_deg.is_some())
+            .filter(|_| !is_withheld)
             .map(Deviation::degrees_east)
             .map(tenth),
         variation_deg_east: corrected
             .variation_deg
             .map(Variation::degrees_east)
             .map(tenth),
-    };
-    let ths = Ths {
+    })
+}
+
+fn ths(corrected: &CorrectedHeading) -> Data {
+    Data::Ths(Ths {
         heading_deg_true: corrected.true_deg.map(TrueHeading::degrees).map(tenth),
         mode: if corrected.true_deg.is_some() {
             ThsMode::Estimated
         } else {
             ThsMode::NotValid
         },
-    };
-    for data in [Data::Hdg(hdg), Data::Ths(ths)] {
-        write(
-            &Sentence {
-                talker: AGENT_TALKER,
-                data,
-            },
-            &mut out,
-        );
-    }
-    write_quality(corrected, quality, &mut out);
-    out
+    })
+}
+
+/// Returns HDT; none while the heading is withheld, for it cannot say so.
+fn hdt(corrected: &CorrectedHeading) -> Option<Data> {
+    let heading_deg_true = Some(tenth(corrected.true_deg?.degrees()));
+    Some(Data::Hdt(Hdt { heading_deg_true }))
 }
 
 fn write_quality(corrected: &CorrectedHeading, quality: Option<Quality>, out: &mut Vec<u8>) {
@@ -95,7 +190,8 @@ mod tests {
     use super::*;
 
     fn text(corrected: &CorrectedHeading, quality: Option<Quality>) -> String {
-        String::from_utf8(heading_sentences(corrected, quality)).unwrap()
+        let mut sentences = HeadingSentences::new(&OutputConfig::default());
+        String::from_utf8(sentences.due(corrected, quality, Instant::now())).unwrap()
     }
 
     fn corrected(compass: f64, deviation: f64, variation: f64) -> CorrectedHeading {
@@ -143,6 +239,48 @@ mod tests {
         assert!(said.starts_with("$IIHDG,,,,,*"), "{said}");
         assert!(said.contains("$IITHS,,V*"), "{said}");
         assert!(said.contains("$PBINQ,V,,,*"), "{said}");
+    }
+
+    #[test]
+    fn while_a_heading_is_withheld_nothing_can_be_read_as_one() {
+        let withheld = CorrectedHeading {
+            magnetic_deg: None,
+            true_deg: None,
+            ..corrected(90.0, 2.0, 4.0)
+        };
+        let config: OutputConfig = toml::from_str("hdt = true").unwrap();
+        let mut sentences = HeadingSentences::new(&config);
+        let said = sentences.due(&withheld, None, Instant::now());
+        let said = String::from_utf8(said).unwrap();
+        assert!(said.starts_with("$IIHDG,,,,4.0,E*"), "{said}");
+        assert!(said.contains("$IITHS,,V*"), "{said}");
+        assert!(!said.contains("HDT") && !said.contains("90"), "{said}");
+    }
+
+    #[test]
+    fn each_sentence_has_its_talker_and_interval_and_a_withheld_heading_is_said_at_once() {
+        let config = r#"
+hdg = false
+ths = { interval_s = 10 }
+hdt = { talker = "HE", interval_s = 0.2 }
+"#;
+        let config: OutputConfig = toml::from_str(config).unwrap();
+        let mut sentences = HeadingSentences::new(&config);
+        assert_eq!(sentences.tick(), Duration::from_millis(200));
+        let valid = corrected(90.0, 2.0, 4.0);
+        let start = Instant::now();
+        let mut count = |ms, heading: &CorrectedHeading| {
+            let now = start + Duration::from_millis(ms);
+            let said = String::from_utf8(sentences.due(heading, None, now)).unwrap();
+            ["HDG", "THS", "HEHDT", "PBINQ"].map(|id| said.matches(id).count())
+        };
+        assert_eq!(count(0, &valid), [0, 1, 1, 1]);
+        assert_eq!(count(205, &valid), [0, 0, 1, 0]);
+        assert_eq!(count(395, &valid), [0, 0, 1, 0]);
+        assert_eq!(count(1_000, &valid), [0, 0, 1, 1]);
+        let withheld = CorrectedHeading::default();
+        assert_eq!(count(1_200, &withheld), [0, 1, 0, 1]);
+        assert_eq!(count(1_400, &withheld), [0, 0, 0, 0]);
     }
 
     #[test]

@@ -7,5 +7,5 @@ mod heading_sentences;
 mod outputs;
 
 pub(crate) use alarm_sentence::AlarmSentence;
-pub(crate) use heading_sentences::{Quality, heading_sentences};
+pub(crate) use heading_sentences::{HeadingSentences, Quality};
 pub(crate) use outputs::Outputs;

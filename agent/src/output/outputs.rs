@@ -37,10 +37,10 @@ const SERIAL_RETRY: Duration = Duration::from_secs(5);
 /// Open outputs.
 #[derive(Debug)]
 pub(crate) struct Outputs {
-    clients: Option<broadcast::Sender<Arc<[u8]>>>,
-    udp: Option<(UdpSocket, SocketAddr)>,
-    serial: Option<mpsc::Sender<Arc<[u8]>>>,
-    /// Address of the TCP server.
+    clients: Vec<broadcast::Sender<Arc<[u8]>>>,
+    udp: Vec<(UdpSocket, SocketAddr)>,
+    serial: Vec<mpsc::Sender<Arc<[u8]>>>,
+    /// Address of the first TCP server.
     pub(crate) tcp_address: Option<SocketAddr>,
 }
 
@@ -51,27 +51,28 @@ impl Outputs {
         shutdown: &CancellationToken,
     ) -> anyhow::Result<Outputs> {
         let mut outputs = Outputs {
-            clients: None,
-            udp: None,
-            serial: None,
+            clients: Vec::new(),
+            udp: Vec::new(),
+            serial: Vec::new(),
             tcp_address: None,
         };
-        if let Some(address) = config.tcp_server {
+        for &address in &config.tcp_server {
             let listener = TcpListener::bind(address)
                 .await
                 .with_context(|| format!("output.tcp_server {address}: cannot listen"))?;
-            outputs.tcp_address = Some(listener.local_addr()?);
+            let bound = listener.local_addr()?;
+            outputs.tcp_address.get_or_insert(bound);
             let (clients, _) = broadcast::channel(MAX_CLIENT_LAG);
-            outputs.clients = Some(clients.clone());
+            outputs.clients.push(clients.clone());
             let write_timeout = write_timeout(config.interval_s.0);
             tokio::spawn(accept(listener, clients, write_timeout, shutdown.clone()));
         }
-        if let Some(target) = config.udp {
-            outputs.udp = Some((udp_socket(target).await?, target));
+        for &target in &config.udp {
+            outputs.udp.push((udp_socket(target).await?, target));
         }
-        if let Some(serial) = &config.serial {
+        for serial in &config.serial {
             let (lines, waiting) = mpsc::channel(1);
-            outputs.serial = Some(lines);
+            outputs.serial.push(lines);
             tokio::spawn(write_serial(serial.clone(), waiting, shutdown.clone()));
         }
         Ok(outputs)
@@ -80,18 +81,18 @@ impl Outputs {
     /// Sends to all receivers without waiting.
     pub(crate) fn send(&self, sentences: Vec<u8>) {
         let sentences: Arc<[u8]> = sentences.into();
-        if let Some((socket, target)) = &self.udp
-            && let Err(error) = socket.try_send_to(&sentences, *target)
-        {
-            tracing::debug!(%error, %target, "a datagram was not sent");
+        for (socket, target) in &self.udp {
+            if let Err(error) = socket.try_send_to(&sentences, *target) {
+                tracing::debug!(%error, %target, "a datagram was not sent");
+            }
         }
-        if let Some(serial) = &self.serial {
+        for serial in &self.serial {
             // Full: the port is slower than the interval, or gone.
             serial.try_send(sentences.clone()).ok();
         }
-        if let Some(clients) = &self.clients {
+        for clients in &self.clients {
             // An error only means that no client is connected.
-            clients.send(sentences).ok();
+            clients.send(sentences.clone()).ok();
         }
     }
 }
@@ -239,7 +240,7 @@ mod tests {
     async fn server() -> (Outputs, SocketAddr, CancellationToken) {
         let shutdown = CancellationToken::new();
         let config = OutputConfig {
-            tcp_server: Some("127.0.0.1:0".parse().unwrap()),
+            tcp_server: vec!["127.0.0.1:0".parse().unwrap()],
             ..OutputConfig::default()
         };
         let outputs = Outputs::open(&config, &shutdown).await.unwrap();
@@ -249,7 +250,7 @@ mod tests {
 
     /// Waits until the given number of clients is connected.
     async fn connected(outputs: &Outputs, clients: usize) {
-        while outputs.clients.as_ref().unwrap().receiver_count() < clients {
+        while outputs.clients[0].receiver_count() < clients {
             tokio::task::yield_now().await;
         }
     }
@@ -332,27 +333,32 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn datagrams_reach_their_address() {
+    async fn datagrams_reach_all_their_addresses() {
         let listener = UdpSocket::bind("127.0.0.1:0").await.unwrap();
+        let other = UdpSocket::bind("127.0.0.1:0").await.unwrap();
         let config = OutputConfig {
-            udp: Some(listener.local_addr().unwrap()),
+            udp: vec![listener.local_addr().unwrap(), other.local_addr().unwrap()],
             ..OutputConfig::default()
         };
         let outputs = Outputs::open(&config, &CancellationToken::new())
             .await
             .unwrap();
-        outputs.udp.as_ref().unwrap().0.writable().await.unwrap();
+        for (socket, _) in &outputs.udp {
+            socket.writable().await.unwrap();
+        }
         outputs.send(b"heading\r\n".to_vec());
         let mut buffer = [0; 64];
-        let length = listener.recv(&mut buffer).await.unwrap();
-        assert_eq!(&buffer[..length], b"heading\r\n");
+        for receiver in [listener, other] {
+            let length = receiver.recv(&mut buffer).await.unwrap();
+            assert_eq!(&buffer[..length], b"heading\r\n");
+        }
     }
 
     #[tokio::test]
     async fn an_address_in_use_is_named() {
         let (_outputs, address, _shutdown) = server().await;
         let config = OutputConfig {
-            tcp_server: Some(address),
+            tcp_server: vec![address],
             ..OutputConfig::default()
         };
         let error = Outputs::open(&config, &CancellationToken::new())

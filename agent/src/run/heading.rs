@@ -4,7 +4,7 @@ use super::Agent;
 use crate::alert::AlertRecord;
 use crate::corrected_heading::{self, CardRow, CorrectedHeading, CorrectionInputs};
 use crate::instruments::{Latest, SentHeading};
-use crate::output::{Quality, heading_sentences};
+use crate::output::Quality;
 use crate::status::ModelStatus;
 use crate::{card_invalidation, clock};
 use binnacle_wire::messages::CardWithdrawn;
@@ -57,12 +57,14 @@ impl Agent {
         if let Some(sent) = sent_heading(&corrected) {
             self.acquisition.note_sent(sent, Instant::now());
         }
-        let mut sentences = heading_sentences(&corrected, quality);
+        let mut sentences = self.sentences.due(&corrected, quality, Instant::now());
         if let Some(alarm) = &mut self.alarm {
             let due = alarm.due(self.alert_monitor.record(), Instant::now());
             sentences.extend(due.into_iter().flatten());
         }
-        self.outputs.send(sentences);
+        if !sentences.is_empty() {
+            self.outputs.send(sentences);
+        }
     }
 
     pub(super) fn model_status(&self) -> Option<ModelStatus> {

@@ -16,7 +16,7 @@ use crate::alert::{AlertMonitor, AlertRecord};
 use crate::config::{Config, SilenceConfig, UploadPlan};
 use crate::input::InputStats;
 use crate::instruments::Observation;
-use crate::output::{AlarmSentence, Outputs};
+use crate::output::{AlarmSentence, HeadingSentences, Outputs};
 use crate::raw_log::{RawLog, Second};
 use crate::sampler::{Exclusion, Tally};
 use crate::spool::{Pending, Seal, Spool, StoredReport};
@@ -63,7 +63,7 @@ struct Agent {
     observations: mpsc::Receiver<Vec<Observation>>,
     inputs: Vec<(String, Arc<InputStats>)>,
     outputs: Outputs,
-    interval: Duration,
+    sentences: HeadingSentences,
     exclusion: watch::Sender<Option<Exclusion>>,
     alert_monitor: AlertMonitor,
     /// Alert as the spool has it.
@@ -98,7 +98,7 @@ struct Unstored {
 impl Agent {
     async fn run(mut self, shutdown: CancellationToken) {
         let mut second = interval(TICK);
-        let mut output = interval(self.interval);
+        let mut output = interval(self.sentences.tick());
         for ticks in [&mut second, &mut output] {
             ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
         }

@@ -6,7 +6,7 @@ use crate::alert::AlertMonitor;
 use crate::clock;
 use crate::config::{Config, InputConfig};
 use crate::input::{self, InputStats};
-use crate::output::{AlarmSentence, Outputs};
+use crate::output::{AlarmSentence, HeadingSentences, Outputs};
 use crate::page::{self, PageState};
 use crate::raw_log::RawLog;
 use crate::sampler::Tally;
@@ -35,6 +35,7 @@ impl Agent {
         let last_contact = uplink_handle.link.borrow().last_contact;
         let (roles, silence) = (&config.roles, &config.silence);
         let mut acquisition = Acquisition::new(roles, silence, settings, exclusion);
+        acquisition.set_own_headings(&config.output.headings());
         let is_recorded = |input: &InputConfig| matches!(input, InputConfig::File(_));
         if !config.inputs.values().any(is_recorded) {
             // The computer may have lost its time with its power.
@@ -93,7 +94,7 @@ impl Agent {
             observations,
             inputs,
             outputs,
-            interval: config.output.interval_s.duration(),
+            sentences: HeadingSentences::new(&config.output),
             exclusion,
             alert_monitor: AlertMonitor::new(config.alert, stored_alert, judged_by),
             stored_alert,

@@ -122,6 +122,13 @@ impl Roles {
         }
     }
 
+    /// Adds headings that the agent sends, which no source without a talker matches.
+    pub(crate) fn add_own_headings(&mut self, headings: &[([u8; 2], [u8; 3])]) {
+        for role in [&mut self.compass, &mut self.gyro, &mut self.satellite] {
+            role.add_own_headings(headings);
+        }
+    }
+
     /// Returns GNSS time, once it is known.
     pub(crate) fn now(&self) -> Option<Timestamp> {
         self.clock.now()

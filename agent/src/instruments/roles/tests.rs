@@ -297,3 +297,20 @@ fn an_old_reading_does_not_serve() {
     assert_eq!(at_age(16), None);
     assert!(at_age(14).is_some());
 }
+
+#[test]
+fn a_raw_heading_that_a_server_calls_magnetic_is_the_compass_in_one_line() {
+    let line = r#"compass = [{ source = "serial.HC", sentence = "HDM", raw = true }]"#;
+    let mut roles = roles(line);
+    let magnetic = Reading::Magnetic {
+        heading: binnacle_compass::angle::MagneticHeading::new(7.0).unwrap(),
+        deviation: None,
+        variation: None,
+    };
+    let found = first(&mut roles, &signalk("serial.HC", *b"HDM", magnetic));
+    assert_eq!(found, CompassHeading::new(7.0).map(Signal::Compass));
+    assert_eq!(
+        first(&mut roles, &signalk("n2k.4", *b"HDM", magnetic)),
+        None
+    );
+}
