@@ -23,8 +23,8 @@ const READINGS_OF_MEAN: usize = 20;
 const READINGS_TO_NEXT: usize = 10;
 /// Interval of the readings of the reference that count, seconds.
 const INTERVAL_S: f64 = 1.0;
-/// Longest gap within a mean, seconds.
-const MAX_GAP_S: f64 = 3.0;
+/// Longest gap within a mean, seconds: some receivers give the time every few seconds.
+const MAX_GAP_S: f64 = 10.0;
 /// Differences from which the usual one follows.
 const DIFFERENCES: usize = 15;
 /// Pairs that are kept of each degree of heading, enough for a decision on one course, and of all.
@@ -48,9 +48,9 @@ pub(super) struct Circumstances {
 #[derive(Debug, Default)]
 pub(super) struct RecentCompass {
     readings: VecDeque<CompassHeading>,
-    /// Readings since the clock advanced, and in the second before.
-    in_second: usize,
-    in_last_second: usize,
+    /// Readings since the clock advanced, and a second before.
+    since_advance: usize,
+    rate_hz: f64,
     advanced: Option<Timestamp>,
 }
 
@@ -62,16 +62,18 @@ impl RecentCompass {
             return;
         }
         self.advanced = Some(now);
-        self.in_last_second = std::mem::take(&mut self.in_second);
+        let count = std::mem::take(&mut self.since_advance) as f64;
+        let passed_s = passed_s.filter(|passed_s| (INTERVAL_S..=MAX_GAP_S).contains(passed_s));
+        self.rate_hz = passed_s.map_or(0.0, |passed_s| count / passed_s);
         // A compass that is read no more makes no pair.
-        if self.in_last_second == 0 || passed_s.is_some_and(|passed_s| passed_s > MAX_GAP_S) {
+        if self.rate_hz <= 0.0 {
             self.readings.clear();
         }
     }
 
     /// Adds a reading.
     pub(super) fn add(&mut self, compass: CompassHeading) {
-        self.in_second += 1;
+        self.since_advance += 1;
         if self.readings.len() == *CANDIDATES.end() {
             self.readings.pop_front();
         }
@@ -80,8 +82,8 @@ impl RecentCompass {
 
     /// Returns the readings that a copy may repeat, the latest first.
     fn candidates(&self) -> impl Iterator<Item = CompassHeading> {
-        let rate = self.in_last_second.max(self.in_second) as f64;
-        let count = ((DELAY_S * rate) as usize).clamp(*CANDIDATES.start(), *CANDIDATES.end());
+        let count =
+            ((DELAY_S * self.rate_hz) as usize).clamp(*CANDIDATES.start(), *CANDIDATES.end());
         self.readings.iter().rev().take(count).copied()
     }
 }
