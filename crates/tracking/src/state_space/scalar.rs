@@ -17,8 +17,8 @@ use binnacle_compass::ship::PARAMETERS;
 /// Gyro's share of the reference heading where both are read: the noise that is new in every
 /// row is least.
 const GYRO_SHARE: f64 = 0.7;
-/// Reference's share of the heading at which a row is taken.
-const REFERENCE_SHARE: f64 = 0.6;
+/// Reference's part of the white noise of a full row.
+const REFERENCE_WHITE: f64 = 0.4;
 /// Least change of an innovation by that of the compass's reading: no compass is steered by
 /// where it is less.
 const LEAST_PER_COMPASS: f64 = 0.1;
@@ -59,8 +59,10 @@ pub(crate) fn difference(
     levels: &Levels,
     silent: Silent,
 ) -> Option<Scalar> {
-    let gyro = Reference::gyro(row, row.gyro_deg?);
+    let mut gyro = Reference::gyro(row, row.gyro_deg?);
     let satellite = Reference::satellite(row, row.satellite_deg?);
+    let off = wrap_180(gyro.heading_deg - satellite.heading_deg);
+    gyro.turn_to(satellite.heading_deg + GYRO_SHARE * off, row);
     let level = levels.at(Level::DifferenceWhite);
     let variance = if silent.gyro || silent.satellite {
         SAYS_NOTHING_DEG.powi(2)
@@ -88,8 +90,18 @@ pub(crate) fn deviation(
     };
     match &row.course {
         Some(course) => deviation_by_course(row, mean, course, variance),
-        None => deviation_by(row, mean, &Reference::mixed(row, share), variance),
+        None => {
+            let reference = Reference::mixed(row, share);
+            let of_reference = reference_part(row, white, level * level);
+            deviation_by(row, mean, reference, variance, of_reference)
+        }
     }
+}
+
+/// Returns the reference's part of a row's white noise.
+fn reference_part(row: &Row, white: f64, level_squared: f64) -> f64 {
+    let own = REFERENCE_WHITE * level_squared * row.difference_white.factor;
+    ((own + row.difference_white.scatter) / white).min(1.0)
 }
 
 /// Returns the deviation that an azimuth showed, in the circumstances of a row: no reference
@@ -104,8 +116,10 @@ pub(crate) fn sighted_deviation(row: &Row, mean: &[f64; STATES], azimuth: &Azimu
     let sight = Reference {
         heading_deg: compass_deg + result.deviation_deg.degrees_east(),
         load: [0.0; STATES],
+        gyro_share: 0.0,
     };
-    deviation_by(&row, mean, &sight, result.standard_error_deg.powi(2))
+    // The card is read as often as the bearing.
+    deviation_by(&row, mean, sight, result.standard_error_deg.powi(2), 0.5)
 }
 
 /// Returns the gyro's error that an azimuth showed; none without the gyro's reading, and on a
@@ -141,21 +155,32 @@ pub(crate) fn gyro_share(row: &Row, silent: Silent) -> f64 {
 struct Reference {
     heading_deg: f64,
     load: [f64; STATES],
+    gyro_share: f64,
 }
 
 impl Reference {
     fn gyro(row: &Row, heading_deg: f64) -> Reference {
         let mut load = [0.0; STATES];
-        let (sin, cos) = (heading_deg + row.variation_deg).to_radians().sin_cos();
         load[GYRO] = 1.0;
         load[GYRO_SLOW] = 1.0 / row.cos_lat;
         load[SCHULER] = 1.0 / row.cos_lat;
-        load[SPEED] = row.northerly_deg * cos;
-        load[GYRO_HEADING] = sin;
-        load[GYRO_HEADING + 1] = cos;
         load[SETTLING] = 1.0;
         load[LAG] = -row.rate_of_turn_deg_min;
-        Reference { heading_deg, load }
+        let mut gyro = Reference {
+            heading_deg,
+            load,
+            gyro_share: 1.0,
+        };
+        gyro.turn_to(heading_deg, row);
+        gyro
+    }
+
+    /// Takes the loads that depend on the heading at a better one, less the charted variation.
+    fn turn_to(&mut self, heading_deg: f64, row: &Row) {
+        let (sin, cos) = (heading_deg + row.variation_deg).to_radians().sin_cos();
+        self.load[SPEED] = self.gyro_share * row.northerly_deg * cos;
+        self.load[GYRO_HEADING] = self.gyro_share * sin;
+        self.load[GYRO_HEADING + 1] = self.gyro_share * cos;
     }
 
     fn satellite(row: &Row, heading_deg: f64) -> Reference {
@@ -163,7 +188,11 @@ impl Reference {
         load[SATELLITE] = 1.0;
         load[REFLECTION] = 1.0;
         load[LAG] = -row.rate_of_turn_deg_min;
-        Reference { heading_deg, load }
+        Reference {
+            heading_deg,
+            load,
+            gyro_share: 0.0,
+        }
     }
 
     fn mixed(row: &Row, gyro_share: f64) -> Reference {
@@ -179,12 +208,14 @@ impl Reference {
                     load: std::array::from_fn(|i| {
                         gyro_share * gyro.load[i] + (1.0 - gyro_share) * satellite.load[i]
                     }),
+                    gyro_share,
                 }
             }
             (Some(one), None) | (None, Some(one)) => one,
             (None, None) => Reference {
                 heading_deg: row.compass_deg,
                 load: [0.0; STATES],
+                gyro_share: 0.0,
             },
         }
     }
@@ -287,29 +318,41 @@ fn load_card_and_variation(row: &Row, load: &mut [f64; STATES]) {
     load[DAILY + 1] = by_h * row.daily[1];
 }
 
-fn deviation_by(row: &Row, mean: &[f64; STATES], reference: &Reference, variance: f64) -> Scalar {
-    let mut load = reference.load;
-    load_card_and_variation(row, &mut load);
-    let constant = dot(&load, mean);
+/// Returns reference less compass, at the mean. Its slopes are taken at the heading that the
+/// noise of both readings leaves most certain, which is uncorrelated with the innovation: at
+/// either reading's own heading, noise would pass for magnetism or for an error of the reference.
+fn deviation_by(
+    row: &Row,
+    mean: &[f64; STATES],
+    mut reference: Reference,
+    variance: f64,
+    reference_part: f64,
+) -> Scalar {
     let ship = Ship::new(row, mean);
+    let mut of_card = [0.0; STATES];
+    load_card_and_variation(row, &mut of_card);
+    let by_card = mean[ALIGNMENT] + mean[SWING] + of_card[FRICTION] * mean[FRICTION];
+    let by_variation = dot(&of_card, mean) - by_card;
     // Errors of reference and variation turn the heading; those of the compass do not.
-    let of_card = mean[ALIGNMENT] + mean[SWING] + load[FRICTION] * mean[FRICTION];
-    let magnetic_deg = reference.heading_deg - (constant - of_card);
-    let innovation_at = |needle: &Needle| {
-        wrap_180(
-            reference.heading_deg
-                - row.compass_deg
-                - needle.deviation_rad().to_degrees()
-                - constant,
-        )
+    let magnetic_deg =
+        |reference: &Reference| reference.heading_deg - dot(&reference.load, mean) - by_variation;
+    let innovation_at = |magnetic_deg: f64, needle: &Needle| {
+        let deviation_deg = needle.deviation_rad().to_degrees();
+        wrap_180(magnetic_deg - row.compass_deg - deviation_deg - by_card)
     };
-    let rough = innovation_at(&ship.needle(magnetic_deg, row));
-    let fused_deg = magnetic_deg - (1.0 - REFERENCE_SHARE) * rough;
+    let rough_deg = magnetic_deg(&reference);
+    let rough = innovation_at(rough_deg, &ship.needle(rough_deg, row));
+    let fused_deg = rough_deg - reference_part * rough;
+    reference.turn_to(fused_deg + by_variation, row);
     let needle = ship.needle(fused_deg, row);
-    let innovation = innovation_at(&needle) / per_compass(&needle);
+    let innovation = innovation_at(magnetic_deg(&reference), &needle);
+    let mut load = reference.load;
+    for (load, of_card) in load.iter_mut().zip(of_card) {
+        *load += of_card;
+    }
     ship.load(row, &needle, &mut load);
     Scalar {
-        innovation,
+        innovation: innovation / per_compass(&needle, reference_part),
         load,
         variance,
         considered: None,
@@ -319,9 +362,9 @@ fn deviation_by(row: &Row, mean: &[f64; STATES], reference: &Reference, variance
 /// Returns the change of an innovation by that of the compass's reading, which also moves the
 /// heading at which the row is taken. Innovations are given by the compass's reading: a ship
 /// so magnetic that her compass hardly turns explains no reading by being blind to it.
-fn per_compass(needle: &Needle) -> f64 {
+fn per_compass(needle: &Needle, reference_part: f64) -> f64 {
     let deviation_slope = 1.0 - needle.compass_per_magnetic();
-    (1.0 + (1.0 - REFERENCE_SHARE) * deviation_slope).max(LEAST_PER_COMPASS)
+    (1.0 + reference_part * deviation_slope).max(LEAST_PER_COMPASS)
 }
 
 /// Ship's magnetism with the fields of a row's circumstances in it.
