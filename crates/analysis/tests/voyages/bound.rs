@@ -41,6 +41,21 @@ pub(crate) fn bound(voyage: &Voyage, h_nt: f64, z_nt: f64) -> f64 {
     headings.sum::<f64>() / HEADINGS as f64
 }
 
+/// Returns the bound on the variance of the curve's shape, which is the curve less its mean
+/// over the headings.
+pub(crate) fn shape_bound(voyage: &Voyage, h_nt: f64, z_nt: f64) -> f64 {
+    let left = covariance_of_parameters(voyage);
+    let rows = DMatrix::from_fn(HEADINGS, 8, |k, j| {
+        slopes(&voyage.truth.parameters, k as f64 * 10.0, h_nt, z_nt)[j]
+    });
+    let mean = rows.row_mean();
+    let headings = rows.row_iter().map(|row| {
+        let row = row - &mean;
+        (&row * &left * row.transpose())[0]
+    });
+    headings.sum::<f64>() / HEADINGS as f64
+}
+
 fn covariance_of_parameters(voyage: &Voyage) -> DMatrix<f64> {
     let rows = &voyage.observations;
     let n = rows.len();

@@ -1,10 +1,13 @@
-//! Error of the curve over its Cramér–Rao bound, on plain ships with a gyro alone.
+//! Error of the curve's shape over its Cramér–Rao bound, on plain ships with a gyro alone.
+//!
+//! The shape is the curve less its mean over the headings: no heading can separate the compass's
+//! alignment from the gyro's constant, and the model states the alignment alone.
 
 use crate::arguments::Arguments;
 use crate::detector::analyse;
 use crate::table::at_most;
-use crate::voyages::bound::{HEADINGS, bound};
-use crate::voyages::{Faults, Truth, Variety, Voyage, predicted, sail_on, true_deviation};
+use crate::voyages::bound::{HEADINGS, shape_bound};
+use crate::voyages::{Faults, Truth, Variety, predicted, sail_on, true_deviation};
 use binnacle_analysis::fit::Observation;
 use binnacle_compass::angle::{TrueHeading, wrap_180};
 use binnacle_compass::field::{FieldModel, field};
@@ -37,7 +40,7 @@ pub(crate) const ROWS: [Row; 3] = [
     },
 ];
 
-/// Mean square error of a ship's curve, and its bound, square degrees.
+/// Mean square error of the shape of a ship's curve, and its bound, square degrees.
 struct Error {
     squares: f64,
     bound: f64,
@@ -53,9 +56,15 @@ pub(crate) fn run(arguments: &Arguments) {
         "14 days, gyro", "ships", "models", "error, deg", "error/bound"
     );
     for row in rows {
-        let errors = arguments.each(SEEDS, |seed| error(row, seed));
-        let errors: Vec<Error> = errors.into_iter().flatten().collect();
-        let sum = |of: fn(&Error) -> f64| errors.iter().map(of).sum::<f64>();
+        let errors = arguments.each(SEEDS, |seed| Some((seed, error(row, seed)?)));
+        let errors: Vec<(u64, Error)> = errors.into_iter().flatten().collect();
+        if arguments.words {
+            for (seed, error) in &errors {
+                let [error_deg, bound_deg] = [error.squares, error.bound].map(f64::sqrt);
+                println!("  seed {seed} error {error_deg:.2}°, bound {bound_deg:.2}°");
+            }
+        }
+        let sum = |of: fn(&Error) -> f64| errors.iter().map(|(_, e)| of(e)).sum::<f64>();
         let (squares, bounds) = (sum(|e| e.squares), sum(|e| e.bound));
         println!(
             "{:16} {:5} {:7} {:12.3} {:>12}",
@@ -79,21 +88,19 @@ fn error(row: &Row, seed: u64) -> Option<Error> {
     let analysis = analyse(&samples, &[]);
     let model = analysis.current_epoch()?.model.clone()?;
     let Truth { h_nt, z_nt, .. } = voyage.truth;
-    let squares = (0..HEADINGS).map(|k| {
-        let compass_deg = 10.0 * k as f64;
-        let (predicted_deg, _) = predicted(&model, compass_deg, h_nt, z_nt);
-        wrap_180(predicted_deg - true_curve_deg(&voyage, compass_deg)).powi(2)
-    });
+    let errors: Vec<f64> = (0..HEADINGS)
+        .map(|k| {
+            let compass_deg = 10.0 * k as f64;
+            let (predicted_deg, _) = predicted(&model, compass_deg, h_nt, z_nt);
+            wrap_180(predicted_deg - true_deviation(&voyage.truth, compass_deg, h_nt, z_nt))
+        })
+        .collect();
+    let mean = errors.iter().sum::<f64>() / HEADINGS as f64;
+    let squares = errors.iter().map(|error| (error - mean).powi(2));
     Some(Error {
         squares: squares.sum::<f64>() / HEADINGS as f64,
-        bound: bound(&voyage, h_nt, z_nt),
+        bound: shape_bound(&voyage, h_nt, z_nt),
     })
-}
-
-/// Returns the true deviation plus the gyro's constant: no heading can separate them.
-fn true_curve_deg(voyage: &Voyage, compass_deg: f64) -> f64 {
-    let Truth { h_nt, z_nt, .. } = voyage.truth;
-    true_deviation(&voyage.truth, compass_deg, h_nt, z_nt) + voyage.reference_constant_deg()
 }
 
 fn igrf(lat_deg: f64, lon_deg: f64, time: Timestamp) -> (f64, f64, f64) {
