@@ -35,6 +35,4 @@ pub mod deviation_table;
 pub mod models;
 
 pub mod azimuths;
-pub mod card;
-pub mod deviation_book;
 pub mod logbook;

@@ -11,11 +11,11 @@ use axum::extract::{DefaultBodyLimit, MatchedPath, Request};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use binnacle_documents::{card, deviation_book};
 use binnacle_fleet::models::NoModelFields;
 use binnacle_fleet::{
-    alerts, azimuths, binnacles, card, changes, compasses, deviation_book, deviation_table,
-    enrolment, ingest, logbook, models, operators, overview, particulars, samples, settings,
-    vessel_api,
+    alerts, azimuths, binnacles, changes, compasses, deviation_table, enrolment, ingest, logbook,
+    models, operators, overview, particulars, samples, settings, vessel_api,
 };
 use binnacle_orders::work_orders::NotAdjustableFields;
 use binnacle_orders::{api as orders_api, firms};

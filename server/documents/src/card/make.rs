@@ -11,15 +11,15 @@ use super::contents::{
 use super::due::{self, next_due};
 use super::observed::{Observed, STEP_DEG};
 use super::refusal::{OLDEST_DAYS, Refusal};
-use crate::adjustments::CompletedOrder;
-use crate::alerts::{CardEffect, OpenAlert};
-use crate::binnacles::StoredRevision;
-use crate::compasses::Compass;
-use crate::deviation::{self, DeviationRow};
-use crate::models::StoredModel;
 use binnacle_compass::deviation::{Coefficients as Exact, DeviationError};
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::ship::EarthField;
+use binnacle_fleet::adjustments::CompletedOrder;
+use binnacle_fleet::alerts::{CardEffect, OpenAlert};
+use binnacle_fleet::binnacles::StoredRevision;
+use binnacle_fleet::compasses::Compass;
+use binnacle_fleet::deviation::{self, DeviationRow};
+use binnacle_fleet::models::StoredModel;
 use binnacle_platform::time::Time;
 
 /// Degrees of compass heading between points of the curve.

@@ -3,10 +3,10 @@
 //! Invariant: a card is predicted until headings at sea have verified the adjustment that its model
 //! comes from. It is never a certificate.
 
-use crate::compasses::Compass;
-use crate::deviation::{DeviationRow, WorstHeading};
 use binnacle_adjustment::binnacle::{Setting, Shape};
 use binnacle_compass::deviation::CoefficientsInDegrees;
+use binnacle_fleet::compasses::Compass;
+use binnacle_fleet::deviation::{DeviationRow, WorstHeading};
 use binnacle_platform::ids::{ModelId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_wire::messages::CardWithdrawn;

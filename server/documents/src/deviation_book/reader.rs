@@ -2,12 +2,12 @@
 
 use super::cards::{CardEnds, Cards};
 use super::entry::{Entry, EntryKey, of_azimuth, of_samples};
-use crate::adjustments::{self, CompletedOrder};
-use crate::analysis::{self, Chunk};
-use crate::azimuths::{self, StoredAzimuth};
-use crate::logbook;
-use crate::models;
 use binnacle_compass::result::SampleDiagnostic;
+use binnacle_fleet::adjustments::{self, CompletedOrder};
+use binnacle_fleet::analysis::{self, Chunk};
+use binnacle_fleet::azimuths::{self, StoredAzimuth};
+use binnacle_fleet::logbook;
+use binnacle_fleet::models;
 use binnacle_platform::db::Db;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{CompassId, VesselId};

@@ -1,11 +1,11 @@
 //! Cards that were in force at a time.
 
-use crate::adjustments::CompletedOrder;
 use crate::card::CardStatus;
-use crate::models::StoredModel;
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::deviation::Prediction;
 use binnacle_compass::ship::EarthField;
+use binnacle_fleet::adjustments::CompletedOrder;
+use binnacle_fleet::models::StoredModel;
 use binnacle_platform::time::Time;
 
 /// Cards of a compass over a range of time.

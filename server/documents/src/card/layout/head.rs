@@ -2,9 +2,9 @@
 
 use super::style::{LEFT, RIGHT, draw_fact, known};
 use crate::card::contents::Card;
-use crate::compasses::Role;
 use binnacle_drawing::angles::{east_west, latitude, longitude};
 use binnacle_drawing::{MARGIN, Sheet, Style};
+use binnacle_fleet::compasses::Role;
 
 const FACT_LINE: f32 = 12.5;
 /// Left edge of the right column, and its width.

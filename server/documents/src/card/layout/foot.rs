@@ -1,11 +1,11 @@
 //! Lower part of the sheet: coefficients, the ship's state, notes, signatures and the source.
 
 use super::style::{GREY, LEFT, RIGHT, UNKNOWN, draw_labelled, known};
-use crate::binnacles::describe_setting;
 use crate::card::contents::{Card, MagneticCargo};
 use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_drawing::angles::signed;
 use binnacle_drawing::{A4, Face, MARGIN, Sheet, Style, wrap};
+use binnacle_fleet::binnacles::describe_setting;
 use binnacle_platform::time::Time;
 
 const SECOND: f32 = 262.0;

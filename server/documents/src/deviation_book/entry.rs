@@ -2,13 +2,13 @@
 
 use super::cards::{CardReading, Cards};
 use super::select::{Occasion, select_entries};
-use crate::azimuths::StoredAzimuth;
 use crate::card;
 use binnacle_compass::angle::{GyroError, GyroHeading, TrueHeading, wrap_180};
 use binnacle_compass::azimuth::AzimuthKind;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::result::{SampleDiagnostic, SampleReason};
 use binnacle_compass::ship::EarthField;
+use binnacle_fleet::azimuths::StoredAzimuth;
 use binnacle_platform::ids::AzimuthId;
 use binnacle_platform::time::Time;
 use serde::Serialize;

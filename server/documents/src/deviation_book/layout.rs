@@ -197,6 +197,7 @@ fn reason_in_words(reason: SampleReason) -> &'static str {
         SampleReason::NoReference => "no reference",
         SampleReason::ReferenceFailed => "reference failed",
         SampleReason::CompassStuck => "compass stuck",
+        SampleReason::GnssInterference => "GNSS interference",
         SampleReason::OutsideFieldModel => "variation not known",
         SampleReason::FieldTooWeak => "field too weak",
         SampleReason::MagneticCargo => "magnetic cargo",

@@ -3,9 +3,9 @@
 use super::style::{GREY, LINE, RIGHT};
 use super::table::{Lines, line_name};
 use crate::card::contents::{Card, CardRow};
-use crate::deviation::DeviationRow;
 use binnacle_drawing::angles::east_west;
 use binnacle_drawing::{Pen, Point, Sheet, Style};
+use binnacle_fleet::deviation::DeviationRow;
 
 const LEFT: f32 = 352.0;
 const BAND: u8 = 214;

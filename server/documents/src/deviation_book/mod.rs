@@ -13,13 +13,13 @@ mod layout;
 mod reader;
 mod select;
 
-use crate::compasses;
-use crate::vessels;
 use axum::body::{Body, Bytes};
 use axum::extract::{FromRef, State};
 use axum::response::Response;
 use binnacle_compass::time::Timestamp;
 use binnacle_drawing::{self, About};
+use binnacle_fleet::compasses;
+use binnacle_fleet::vessels;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
