@@ -21,6 +21,7 @@ const passing: readonly ChangeCause[] = [
   'local_anomaly',
   'magnetic_storm',
   'berth_steel',
+  'gnss_interference',
 ];
 
 /** Whether the ship's magnetism is another after it; what was withdrawn changed nothing. */

@@ -24,6 +24,7 @@ function vessel(name: string, more: Partial<FleetVessel> = {}): FleetVessel {
     last_upload_at: '2026-11-22T05:00:00Z',
     position: null,
     track: [],
+    interference: [],
     model: { version: 1, rms_deg: 0.4, data_until: '2026-11-22T04:00:00Z', cautions: 0 },
     worst: { compass_deg: 90, deviation_deg: 2, band95_deg: 0.5 },
     open_alerts: 0,

@@ -74,6 +74,11 @@ pub struct Sample {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(value_type = Option<u16>))]
     pub satellite_source: Option<SourceId>,
+    /// True if the position is by dead reckoning, because the receivers of satellites were
+    /// disturbed. No estimate uses such a sample.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[cfg_attr(feature = "openapi", schema(default = false))]
+    pub position_reckoned: bool,
 }
 
 impl Sample {
@@ -95,6 +100,7 @@ impl Sample {
             temperature_c: None,
             gyro_source: None,
             satellite_source: None,
+            position_reckoned: false,
         }
     }
 }

@@ -40,7 +40,11 @@ fn samples() -> impl Strategy<Value = Vec<Sample>> {
             option::of(0.0..=90.0_f64),
             option::of(-100.0..=100.0_f64),
         ),
-        (option::of(any::<u16>()), option::of(any::<u16>())),
+        (
+            option::of(any::<u16>()),
+            option::of(any::<u16>()),
+            any::<bool>(),
+        ),
         1..=u16::MAX,
     );
     let sample = sample.prop_map(|(place, headings, rest, motion, sources, windows)| Sample {
@@ -50,6 +54,7 @@ fn samples() -> impl Strategy<Value = Vec<Sample>> {
         temperature_c: motion.3,
         gyro_source: sources.0.map(SourceId::new),
         satellite_source: sources.1.map(SourceId::new),
+        position_reckoned: sources.2,
         gyro: headings.1.and_then(TrueHeading::new),
         satellite: headings.2.and_then(TrueHeading::new),
         sog_kn: rest.0,
@@ -155,6 +160,7 @@ fn motion_within_half_a_step(sent: &Sample, decoded: &Sample) -> bool {
         && close(sent.roll_deg, decoded.roll_deg, 0.1)
         && close(sent.roll_spread_deg, decoded.roll_spread_deg, 0.25)
         && close(sent.temperature_c, decoded.temperature_c, 0.5)
+        && sent.position_reckoned == decoded.position_reckoned
         && (sent.gyro_source, sent.satellite_source)
             == (decoded.gyro_source, decoded.satellite_source)
 }

@@ -19,6 +19,7 @@ export const changes = {
     local_anomaly: 'Local anomaly',
     magnetic_storm: 'Magnetic storm',
     berth_steel: 'Steel at the berth',
+    gnss_interference: 'GNSS interference',
     unknown: 'A change of unknown cause',
   } satisfies Record<ChangeCause, string>,
   unconfirmed: 'not certain yet',

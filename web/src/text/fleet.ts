@@ -78,6 +78,7 @@ export const map = {
   all: 'Whole fleet',
   none: 'No vessel has a position yet.',
   legend: 'Marks',
+  interference: 'GNSS interference in the last 14 days',
   mark: {
     calm: 'no open alert',
     notice: 'notice',

@@ -91,6 +91,7 @@ export const agents = {
     not_independent: 'refused: the reference is made of the compass itself',
     unproven_reference: 'refused: the reference is not yet shown to be independent of the compass',
     two_sensors: 'refused: two sensors send as one',
+    gnss_interference: 'refused: GNSS interference, and no gyro',
     no_position: 'refused: no position',
     no_speed: 'refused: no speed over ground',
     sparse: 'refused: too few readings',

@@ -19,6 +19,7 @@ export const alertCause = {
   local_anomaly: 'Local anomaly',
   magnetic_storm: 'Magnetic storm',
   berth_steel: 'Steel at the berth',
+  gnss_interference: 'GNSS interference',
   unknown_change: 'Magnetism changed: cause unknown',
   reported_aboard: 'Compass and gyro parted, says the ship',
   silent_agent: 'No word from the vessel',

@@ -5,6 +5,7 @@
 //! without a reason.
 
 pub mod berth_stays;
+pub mod interference;
 pub mod logbook_rules;
 pub mod reading;
 pub mod steady_course;

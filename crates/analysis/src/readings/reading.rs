@@ -92,6 +92,7 @@ fn reading(
     let variation = found.map(|f| f.declination());
     let earth = found.map(|f| f.for_ship());
     let reason = match earth {
+        _ if sample.position_reckoned => Some(SampleReason::GnssInterference),
         _ if !has_reference(&sample, grade) => Some(SampleReason::NoReference),
         None => Some(SampleReason::OutsideFieldModel),
         Some(earth) if earth.h_nt < WEAKEST_H_NT => Some(SampleReason::FieldTooWeak),

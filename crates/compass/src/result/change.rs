@@ -78,6 +78,8 @@ pub enum Cause {
     MagneticStorm,
     /// Steel of the quay and its cranes.
     BerthSteel,
+    /// Jamming or spoofing of the receivers of satellites; the magnetic compass is sound.
+    GnssInterference,
     /// None of these is likely.
     Unknown,
 }

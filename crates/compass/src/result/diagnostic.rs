@@ -51,6 +51,8 @@ pub enum SampleReason {
     ReferenceFailed,
     /// The compass was stuck while the ship turned, or swung by itself.
     CompassStuck,
+    /// Taken under GNSS interference: its position is by dead reckoning.
+    GnssInterference,
     /// Date outside the years of the field model.
     OutsideFieldModel,
     /// The horizontal field is too weak for a compass.

@@ -27,7 +27,7 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
     let MarkedReadings {
         mut readings,
         grade,
-        stuck,
+        faults: marked,
         stays,
         course,
     } = MarkedReadings::new(input);
@@ -81,7 +81,7 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
         logbook,
         current: current.as_ref(),
     });
-    changes.extend(stuck);
+    changes.extend(marked);
     add_berth_changes(&stays, &readings, &epochs, &mut changes);
     changes.sort_by_key(|change| (change.from, change.detected_at));
     let mut remarks: Vec<String> = course.map(CourseUse::notice).into_iter().collect();

@@ -3,6 +3,7 @@
 use super::by_course::CourseUse;
 use super::input::Input;
 use binnacle_analysis::readings::berth_stays::mark_alongside;
+use binnacle_analysis::readings::interference::interference;
 use binnacle_analysis::readings::reading::{Reading, readings};
 use binnacle_analysis::readings::stuck_compass::mark_stuck;
 use binnacle_compass::model::ReferenceGrade;
@@ -13,8 +14,9 @@ use std::ops::Range;
 pub(super) struct MarkedReadings {
     pub(super) readings: Vec<Reading>,
     pub(super) grade: ReferenceGrade,
-    /// Times at which the compass stood while the ship turned.
-    pub(super) stuck: Vec<Change>,
+    /// Times at which the compass stood while the ship turned, and at which the receivers of
+    /// satellites were disturbed.
+    pub(super) faults: Vec<Change>,
     /// Places of the readings alongside, a range for each stay.
     pub(super) stays: Vec<Range<usize>>,
     /// Use of the course over ground, on a ship without heading reference.
@@ -26,13 +28,14 @@ impl MarkedReadings {
     pub(super) fn new(input: &Input<'_>) -> MarkedReadings {
         let grade = ReferenceGrade::of(input.samples);
         let mut readings = readings(input.samples, input.logbook, &input.settings, grade);
-        let stuck = mark_stuck(&mut readings);
+        let mut faults = mark_stuck(&mut readings);
+        faults.extend(interference(&readings));
         let stays = mark_alongside(&mut readings);
         let course = CourseUse::mark(grade, &mut readings);
         MarkedReadings {
             readings,
             grade,
-            stuck,
+            faults,
             stays,
             course,
         }

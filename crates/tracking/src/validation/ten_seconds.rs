@@ -102,6 +102,7 @@ pub(super) fn mean_sample(tens: &[&TenSeconds]) -> Option<Sample> {
         windows: tens.len().min(usize::from(u16::MAX)) as u16,
         gyro_source: middle.gyro_source,
         satellite_source: middle.satellite_source,
+        position_reckoned: middle.position_reckoned,
         temperature_c: middle.temperature_c,
         ..Sample::new(
             Timestamp::from_micros(middle_micros).ok()?,

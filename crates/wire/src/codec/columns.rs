@@ -32,9 +32,10 @@ const ROLL_SPREAD: u64 = 13;
 const TEMPERATURE: u64 = 14;
 const GYRO_SOURCE: u64 = 15;
 const SATELLITE_SOURCE: u64 = 16;
+const RECKONED: u64 = 17;
 
 /// The last id that this version knows.
-pub(super) const LAST_KNOWN: u64 = SATELLITE_SOURCE;
+pub(super) const LAST_KNOWN: u64 = RECKONED;
 
 /// Columns that every sample has: time, latitude, longitude, compass, windows.
 pub(super) const REQUIRED: usize = 5;
@@ -56,6 +57,7 @@ const ROLL_STEP: Step = Step::new(2, 1);
 const ROLL_SPREAD_STEP: Step = Step::new(5, 1);
 const TEMPERATURE_STEP: Step = Step::new(1, 0);
 const SOURCE_STEP: Step = Step::new(1, 0);
+const RECKONED_STEP: Step = Step::new(1, 0);
 
 /// Seconds since 1970 at 1980-01-06, when GPS time begins, and at 2100-01-01.
 const TIME_RANGE_S: RangeInclusive<f64> = 315_964_800.0..=4_102_444_800.0;
@@ -152,6 +154,9 @@ pub(super) fn from_samples(samples: &[Sample]) -> Vec<Column> {
         }),
         column(SATELLITE_SOURCE, SOURCE_STEP, samples, |s| {
             s.satellite_source.map(number)
+        }),
+        column(RECKONED, RECKONED_STEP, samples, |s| {
+            s.position_reckoned.then_some(1.0)
         }),
     ];
     columns.retain(|column| column.values.iter().any(Option::is_some));
@@ -337,6 +342,7 @@ fn to_sample(row: &Row<'_>) -> Result<Sample, DecodeError> {
         temperature_c: row.optional_within(TEMPERATURE, &TEMPERATURE_RANGE_C)?,
         gyro_source: row.source(GYRO_SOURCE)?,
         satellite_source: row.source(SATELLITE_SOURCE)?,
+        position_reckoned: row.optional(RECKONED).is_some(),
         ..Sample::new(time, position, compass)
     })
 }

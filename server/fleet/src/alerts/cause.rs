@@ -33,6 +33,8 @@ pub enum Cause {
     MagneticStorm,
     /// Iron of the quay and its cranes.
     BerthSteel,
+    /// Jamming or spoofing of the receivers of satellites.
+    GnssInterference,
     /// A change without a likely cause.
     UnknownChange,
     /// Headings at sea contradict the prediction of an adjustment.

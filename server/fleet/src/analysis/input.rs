@@ -185,6 +185,7 @@ mod tests {
             with(|s| s.temperature_c = Some(1.0)),
             with(|s| s.gyro_source = Some(SourceId::new(1))),
             with(|s| s.satellite_source = Some(SourceId::new(1))),
+            with(|s| s.position_reckoned = true),
         ];
         let distinct: BTreeSet<&String> = hashes.iter().collect();
         assert_eq!(distinct.len(), hashes.len());

@@ -13,11 +13,13 @@
 mod disturbances;
 mod findings;
 pub mod input;
+mod interference;
 pub mod store;
 mod track;
 
 pub use disturbances::{compare_with_fleet, compare_with_fleet_in};
 pub use findings::{ChangeFinding, FailedLately, Findings};
 pub use input::{Input, input_hash};
+pub use interference::{Interference, recent_interference};
 pub use store::{AnalysisResult, Chunk, Covered, chunk, chunks, chunks_between, coverage};
 pub use track::Track;

@@ -2,6 +2,7 @@
 
 use super::disturbances::store_disturbances;
 use super::findings::Findings;
+use super::interference::store_interference;
 use super::track::track;
 use crate::event_kinds;
 use crate::models::{self, ModelJson, StoredModel};
@@ -226,6 +227,7 @@ pub async fn save(tx: &mut Tx, found: &AnalysisResult, now: Time) -> Result<Opti
     save_diagnostics(tx, found).await?;
     let (vessel, compass) = (found.vessel_id, found.compass_id);
     store_disturbances(tx, vessel, compass, &found.findings, now).await?;
+    store_interference(tx, vessel, compass, &found.findings).await?;
     let next = next_model(found, now)?;
     let next = next.filter(|next| {
         predicted.is_none_or(|known| {

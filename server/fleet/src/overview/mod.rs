@@ -6,7 +6,7 @@
 mod store;
 
 use crate::alerts::{Cause, State};
-use crate::analysis::Track;
+use crate::analysis::{Interference, Track};
 use crate::deviation::{self, WorstHeading};
 use crate::models::StoredModel;
 use crate::vessels::LastPosition;
@@ -79,6 +79,8 @@ pub struct FleetVessel {
     /// unreadable.
     #[schema(value_type = Vec<[f64; 2]>)]
     pub track: Track,
+    /// GNSS interference that it met in the last fortnight, the earliest first.
+    pub interference: Vec<Interference>,
     /// The current model of its first compass that has one.
     #[schema(required)]
     pub model: Option<FleetModel>,
@@ -168,13 +170,21 @@ fn assemble(found: store::FleetRecords) -> Fleet {
     };
     let mut tracks = by_vessel(tracks, |track| track.vessel_id);
     let mut calls = by_vessel(found.calls, |call| call.vessel_id);
+    let mut interference: HashMap<VesselId, Vec<Interference>> = HashMap::new();
+    for met in found.interference {
+        interference.entry(met.vessel_id).or_default().push(met);
+    }
     let vessels = found.vessels.into_iter().map(|row| {
         let model = models.remove(&row.id);
         let track = tracks.remove(&row.id).map(|stored| stored.track);
         let alerts = alerts.remove(&row.id).unwrap_or_default();
         let call = calls.remove(&row.id);
         let call = call.map(|call| NextCall::from_port_call(call, model.as_ref()));
-        row.with(model.as_ref(), track.unwrap_or_default(), call, alerts)
+        let met = interference.remove(&row.id).unwrap_or_default();
+        FleetVessel {
+            interference: met,
+            ..row.with(model.as_ref(), track.unwrap_or_default(), call, alerts)
+        }
     });
     Fleet {
         vessels: vessels.collect(),
@@ -206,6 +216,7 @@ impl VesselRow {
             call_sign: self.call_sign,
             last_upload_at: self.last_upload_at,
             track,
+            interference: Vec::new(),
             next_call,
             worst: model.and_then(StoredModel::worst).map(rounded),
             model: model.map(FleetModel::from_model),

@@ -1,7 +1,7 @@
-//! Records of a whole fleet in the database, in five queries.
+//! Records of a whole fleet in the database, in six queries.
 
 use crate::alerts::{Cause, State};
-use crate::analysis::Track;
+use crate::analysis::{Interference, Track, recent_interference};
 use crate::models::{self, StoredModel};
 use crate::vessels::LastPosition;
 use binnacle_platform::db::{Db, Result, rows};
@@ -21,6 +21,8 @@ pub(super) struct FleetRecords {
     pub(super) alerts: Vec<WorstAlert>,
     /// Each vessel's first port call that is not over.
     pub(super) calls: Vec<NextPortCall>,
+    /// GNSS interference of late.
+    pub(super) interference: Vec<Interference>,
 }
 
 /// A vessel's own columns.
@@ -100,6 +102,7 @@ pub(super) async fn find(
         tracks: tracks(db, operator, first, last).await?,
         alerts: open_alerts(db, operator, first, last).await?,
         calls: next_calls(db, operator, first, last, now).await?,
+        interference: recent_interference(db, operator, first, last, now).await?,
     })
 }
 

@@ -78,6 +78,7 @@ pub(super) fn alert_cause(cause: result::Cause) -> Cause {
         result::Cause::LocalAnomaly => Cause::LocalAnomaly,
         result::Cause::MagneticStorm => Cause::MagneticStorm,
         result::Cause::BerthSteel => Cause::BerthSteel,
+        result::Cause::GnssInterference => Cause::GnssInterference,
         // Unreported work cannot be distinguished from other changes.
         result::Cause::AdjustmentOrRepair | result::Cause::Unknown => Cause::UnknownChange,
     }

@@ -159,6 +159,8 @@ pub(in crate::alerts) enum Case {
     Agreeing,
     /// No card judges the compass any more.
     NotJudged,
+    /// The receivers of satellites are disturbed.
+    Interference,
 }
 
 impl CauseRow {

@@ -152,7 +152,8 @@ struct DisturbedSamples {
 
 impl DisturbedSamples {
     fn by(change: &Change, analysis: &Analysis) -> DisturbedSamples {
-        if !change.cause.is_transient() {
+        let is_gnss = change.cause == Cause::GnssInterference;
+        if !(change.cause.is_transient() || is_gnss) {
             return DisturbedSamples::default();
         }
         let last = change.ended.or(analysis.data_until);
@@ -161,9 +162,14 @@ impl DisturbedSamples {
             .samples
             .iter()
             .filter(|s| within(s.sample.time))
-            .filter(|s| s.reason == Some(SampleReason::Disturbance) || change.is_weak_transient())
+            .filter(|s| match s.reason {
+                Some(SampleReason::GnssInterference) => is_gnss,
+                Some(SampleReason::Disturbance) => !is_gnss,
+                _ => change.is_weak_transient(),
+            })
             .collect();
-        let departed = disturbed.iter().filter_map(|s| {
+        let magnetic = disturbed.iter().filter(|_| !is_gnss);
+        let departed = magnetic.filter_map(|s| {
             let earth = EarthField {
                 h_nt: s.h_nt?,
                 z_nt: s.z_nt?,
