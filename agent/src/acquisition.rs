@@ -3,10 +3,12 @@
 
 use crate::config::{RolesConfig, SilenceConfig};
 use crate::instruments::{
-    AGENT_TALKER, ClockCheckpoint, HeardSources, Independence, Observation, OwnOutput, Reading,
-    Readings, Roles, SentHeading, SourceReport, StatedClocks, is_recorded_time,
+    AGENT_TALKER, ClockCheckpoint, GnssGuard, HeardSources, Independence, Interference,
+    Observation, OwnOutput, Reading, Readings, ReckonedPlace, Roles, SentHeading, SourceReport,
+    StatedClocks, is_recorded_time,
 };
 use crate::sampler::{Exclusion, Sampler};
+use binnacle_compass::angle::TrueHeading;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::Settings;
 use std::time::Duration;
@@ -22,6 +24,7 @@ pub(crate) struct Acquisition {
     clocks: StatedClocks,
     own_output: OwnOutput,
     independence: Independence,
+    guard: GnssGuard,
     /// Every source that is heard.
     pub(crate) heard: HeardSources,
     /// Set for recordings: their sources have the rates of the recorded time.
@@ -46,6 +49,7 @@ impl Acquisition {
             clocks: StatedClocks::default(),
             own_output: OwnOutput::new(vec![AGENT_TALKER]),
             independence: Independence::default(),
+            guard: GnssGuard::default(),
             heard: HeardSources::default(),
             is_recorded: false,
             start: Instant::now(),
@@ -153,16 +157,31 @@ impl Acquisition {
         let Some(measured) = heard.checked_sub(age) else {
             return;
         };
-        for signal in self
-            .roles
-            .observe(seen, measured, age)
-            .into_iter()
-            .flatten()
-        {
-            let refused = self.independence.observe(signal);
-            self.sampler.apply(refused.unwrap_or(signal));
-            self.readings.apply(signal, measured);
+        let signals = self.roles.observe(seen, measured, age);
+        self.guard.advance(self.roles.now(), heard);
+        for signal in signals.into_iter().flatten() {
+            for signal in self.guard.apply(signal).into_iter().flatten() {
+                let refused = self.independence.observe(signal);
+                self.sampler.apply(refused.unwrap_or(signal));
+                self.readings.apply(signal, measured);
+            }
         }
+    }
+
+    /// Records the corrected heading, by which the ship is reckoned where there is no gyro.
+    pub(crate) fn note_corrected(&mut self, heading: Option<TrueHeading>) {
+        self.guard.note_corrected(heading);
+    }
+
+    /// Returns the ship's place now, by dead reckoning from the last trusted fix.
+    pub(crate) fn place(&mut self, now: Instant) -> Option<ReckonedPlace> {
+        self.guard.advance(self.roles.now(), now);
+        self.guard.place()
+    }
+
+    /// Returns the interference with the receivers, if there is any.
+    pub(crate) fn interference(&self) -> Option<Interference> {
+        self.guard.interference()
     }
 
     /// Returns the time from which rates follow.

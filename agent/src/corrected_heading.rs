@@ -3,10 +3,12 @@
 //!
 //! Nothing is invented: a value that cannot be computed is absent, with the reason in words.
 
+use crate::instruments::{ReckonedPlace, offset};
 use crate::weak_field::MIN_H_NT;
-use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::angle::{
+    CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation, wrap_180,
+};
 use binnacle_compass::field::{FieldModel, field};
-use binnacle_compass::position::Position;
 use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink};
@@ -19,8 +21,8 @@ pub(crate) struct CorrectionInputs<'a> {
     pub(crate) compass: Option<CompassHeading>,
     /// Set while two sensors that read differently send as the compass.
     pub(crate) compass_is_mixed: bool,
-    /// Position of the vessel, unless it is old.
-    pub(crate) position: Option<Position>,
+    /// Place of the vessel, by dead reckoning from the last trusted fix.
+    pub(crate) place: Option<ReckonedPlace>,
     /// GNSS time.
     pub(crate) time: Option<Timestamp>,
     /// Last model from the server.
@@ -68,6 +70,10 @@ pub(crate) struct CardRow {
 
 /// Confidence band above which the heading is withheld: an autopilot does not show the band.
 const MAX_BAND_DEG: f64 = 10.0;
+/// Radius of the place below which the field is that of its middle, nautical miles.
+const NEAR_NM: f64 = 1.0;
+/// Half-width of a 95 % band in standard errors.
+const BAND_SIGMAS: f64 = 1.96;
 /// Confidence band at which a withheld heading is released, so that it does not flicker as the
 /// vessel yaws.
 const RELEASE_BAND_DEG: f64 = 9.0;
@@ -137,11 +143,53 @@ fn apply_model(
         .map_err(|e| e.to_string())?;
     let magnetic = compass + predicted.deviation;
     corrected.deviation_deg = Some(predicted.deviation);
-    corrected.standard_error_deg = predicted.standard_error_deg;
-    corrected.band95_deg = predicted.band95_deg;
+    let by_place_deg = error_by_place_deg(inputs, model, compass, predicted.deviation);
+    corrected.standard_error_deg = predicted
+        .standard_error_deg
+        .map(|deg| deg.hypot(by_place_deg / BAND_SIGMAS));
+    corrected.band95_deg = predicted.band95_deg.map(|deg| deg.hypot(by_place_deg));
     corrected.magnetic_deg = Some(magnetic);
     corrected.true_deg = Some(magnetic + variation);
     Ok(())
+}
+
+/// Returns the error of the true heading that the uncertain place makes, degrees: the greatest of
+/// four places at its limit.
+fn error_by_place_deg(
+    inputs: CorrectionInputs<'_>,
+    model: &ModelDownlink,
+    compass: CompassHeading,
+    deviation: Deviation,
+) -> f64 {
+    let Some(place) = inputs.place.filter(|place| place.radius_nm > NEAR_NM) else {
+        return 0.0;
+    };
+    let Ok((_, variation)) = field_at(inputs) else {
+        return 0.0;
+    };
+    let sum_deg = deviation.degrees_east() + variation.degrees_east();
+    let r = place.radius_nm;
+    let errors = [(r, 0.0), (-r, 0.0), (0.0, r), (0.0, -r)].map(|(north_nm, east_nm)| {
+        let there = CorrectionInputs {
+            place: Some(ReckonedPlace::exactly(offset(
+                place.position,
+                north_nm,
+                east_nm,
+            ))),
+            ..inputs
+        };
+        let Ok((earth, variation)) = field_at(there) else {
+            return f64::INFINITY;
+        };
+        match model.model.deviation(compass, earth) {
+            Ok(there) => {
+                let there_deg = there.deviation.degrees_east() + variation.degrees_east();
+                wrap_180(there_deg - sum_deg).abs()
+            }
+            Err(_) => f64::INFINITY,
+        }
+    });
+    errors.into_iter().fold(0.0, f64::max)
 }
 
 /// Returns the deviation card at the vessel's position: every 15°, or no rows.
@@ -165,7 +213,7 @@ pub(crate) fn card(inputs: CorrectionInputs<'_>) -> Vec<CardRow> {
 }
 
 fn field_at(inputs: CorrectionInputs<'_>) -> Result<(EarthField, Variation), String> {
-    let position = inputs.position.ok_or("the position is unknown")?;
+    let position = inputs.place.ok_or("the position is unknown")?.position;
     let time = inputs.time.ok_or("the time is unknown")?;
     let field = field(FieldModel::Igrf14, position, 0.0, time).map_err(|e| e.to_string())?;
     Ok((field.for_ship(), field.declination()))
@@ -176,6 +224,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::alert::AlertRecord;
     use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
+    use binnacle_compass::position::Position;
     use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 
     pub(crate) fn model(bx_nt: f64, constant_variance: Option<f64>) -> ModelDownlink {
@@ -211,11 +260,16 @@ pub(crate) mod tests {
         }
     }
 
+    fn place(lat_deg: f64, lon_deg: f64) -> Option<ReckonedPlace> {
+        let position = Position::new(lat_deg, lon_deg).ok()?;
+        Some(ReckonedPlace::exactly(position))
+    }
+
     fn inputs(model: Option<&ModelDownlink>) -> CorrectionInputs<'_> {
         CorrectionInputs {
             compass: CompassHeading::new(90.0),
             compass_is_mixed: false,
-            position: Position::new(43.3, -3.0).ok(),
+            place: place(43.3, -3.0),
             time: Timestamp::parse("2026-11-21T07:00:00Z").ok(),
             model,
             withdrawn: None,
@@ -264,6 +318,24 @@ pub(crate) mod tests {
             problem.as_deref(),
             Some("the deviation here is known only to ±10°")
         );
+    }
+
+    #[test]
+    fn the_band_grows_with_the_uncertainty_of_the_place() {
+        let model = model(2_400.0, Some(0.25));
+        let band = |radius_nm| {
+            let place = place(43.3, -3.0).map(|place| ReckonedPlace { radius_nm, ..place });
+            let inputs = CorrectionInputs {
+                place,
+                ..inputs(Some(&model))
+            };
+            correct(inputs).band95_deg.unwrap()
+        };
+        assert!((band(0.5) - 0.98).abs() < 1e-3);
+        // Variation changes by about a degree in two hundred miles there.
+        let (near, far) = (band(20.0), band(200.0));
+        assert!(0.98 < near && near < 1.1, "{near}");
+        assert!((1.2..4.0).contains(&far), "{far}");
     }
 
     #[test]
@@ -342,7 +414,7 @@ pub(crate) mod tests {
     fn nothing_is_corrected_beside_a_magnetic_pole() {
         let model = model(0.0, None);
         let inputs = CorrectionInputs {
-            position: Position::new(-64.0, 136.0).ok(),
+            place: place(-64.0, 136.0),
             ..inputs(Some(&model))
         };
         let corrected = correct(inputs);
@@ -363,7 +435,7 @@ pub(crate) mod tests {
         });
         assert_eq!(silent.problem.as_deref(), Some("the compass is silent"));
         let lost = correct(CorrectionInputs {
-            position: None,
+            place: None,
             ..inputs(Some(&model))
         });
         assert!(lost.compass_deg.is_some() && lost.deviation_deg.is_none());

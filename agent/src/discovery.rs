@@ -120,6 +120,8 @@ fn propose(heard: &[Heard<'_>]) -> String {
     write_role(&mut out, heard, "position", &positions);
     let turning = with(|reading| matches!(reading, Reading::RateOfTurn { .. }));
     write_role(&mut out, heard, "rate_of_turn", &turning);
+    let logs = with(|reading| matches!(reading, Reading::WaterSpeed { .. }));
+    write_role(&mut out, heard, "log", &logs);
     let rolling = with(|reading| matches!(reading, Reading::Roll { .. }));
     write_role(&mut out, heard, "roll", &rolling);
     let warm = with(|reading| matches!(reading, Reading::Temperature { .. }));

@@ -24,6 +24,9 @@ pub(crate) struct RolesConfig {
     /// Rate of turn.
     #[serde(deserialize_with = "rate_of_turn_sources")]
     pub(crate) rate_of_turn: Vec<SourceConfig>,
+    /// Log: speed through the water.
+    #[serde(deserialize_with = "log_sources")]
+    pub(crate) log: Vec<SourceConfig>,
     /// Roll.
     #[serde(deserialize_with = "roll_sources")]
     pub(crate) roll: Vec<SourceConfig>,
@@ -114,6 +117,7 @@ impl RolesConfig {
             &self.satellite,
             &self.position,
             &self.rate_of_turn,
+            &self.log,
             &self.roll,
             &self.temperature,
         ]
@@ -130,6 +134,7 @@ impl RolesConfig {
             &mut roles.satellite,
             &mut roles.position,
             &mut roles.rate_of_turn,
+            &mut roles.log,
             &mut roles.roll,
             &mut roles.temperature,
         ] {
@@ -147,6 +152,7 @@ impl RolesConfig {
             satellite: Vec::new(),
             position: Vec::new(),
             rate_of_turn: Vec::new(),
+            log: Vec::new(),
             roll: Vec::new(),
             temperature: Vec::new(),
         }
@@ -166,6 +172,7 @@ impl RolesConfig {
             ],
             position: vec![source(None, *b"RMC")],
             rate_of_turn: vec![source(None, *b"ROT")],
+            log: vec![source(None, *b"VHW")],
             roll: vec![source(None, *b"XDR")],
             temperature: vec![source(None, *b"MTA"), source(None, *b"XDR")],
         }
@@ -260,6 +267,10 @@ fn position_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
 
 fn rate_of_turn_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
     sources_of(d, &[b"ROT"], "ROT")
+}
+
+fn log_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
+    sources_of(d, &[b"VHW"], "VHW")
 }
 
 fn roll_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {

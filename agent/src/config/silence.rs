@@ -4,9 +4,6 @@ use super::limits::PositiveSeconds;
 use serde::Deserialize;
 use std::time::Duration;
 
-/// Age of a position up to which a heading is corrected by it: variation at twenty knots changes by
-/// less than a tenth of a degree meanwhile.
-const POSITION_STEERING_S: f64 = 600.0;
 /// Intervals of the compass that it may miss.
 const STEERING_INTERVALS: f64 = 3.0;
 
@@ -24,6 +21,7 @@ pub(crate) struct SilenceConfig {
     pub(crate) satellite: RoleSilence,
     pub(crate) position: SteeringRoleSilence,
     pub(crate) rate_of_turn: RoleSilence,
+    pub(crate) log: RoleSilence,
     pub(crate) roll: RoleSilence,
     pub(crate) temperature: RoleSilence,
 }
@@ -53,6 +51,7 @@ impl Default for SilenceConfig {
             satellite: RoleSilence::default(),
             position: SteeringRoleSilence::default(),
             rate_of_turn: RoleSilence::default(),
+            log: RoleSilence::default(),
             roll: RoleSilence::default(),
             temperature: RoleSilence::default(),
         }
@@ -77,10 +76,11 @@ impl SilenceConfig {
         own.max(Duration::from_secs_f64(shortest))
     }
 
-    /// Returns the age up to which a heading is corrected by a position.
-    pub(crate) fn position_steering(&self) -> Duration {
+    /// Returns the age of the last fix up to which a heading is corrected by dead reckoning from
+    /// it. Without one the error of the reckoned place decides.
+    pub(crate) fn position_steering(&self) -> Option<Duration> {
         let seconds = self.position.steering_s.map(|steering_s| steering_s.0);
-        Duration::from_secs_f64(seconds.unwrap_or(POSITION_STEERING_S))
+        seconds.map(Duration::from_secs_f64)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Readings of each kind of sentence.
 //!
-//! VHW and HBT give no reading: VHW repeats the heading of another instrument without its status. A
-//! course over ground is never a heading.
+//! VHW gives the log's speed alone: it repeats the heading of another instrument without its
+//! status. HBT gives no reading. A course over ground is never a heading.
 
 use crate::instruments::Reading;
 use binnacle_compass::angle::{
@@ -55,12 +55,10 @@ pub(super) fn readings(data: &Data, mut each: impl FnMut(Reading)) {
             temperature(*air_temperature_c)
         }
         Data::Mta(mta) => temperature(mta.air_temperature_c),
-        Data::Rmc(None)
-        | Data::Gga(None)
-        | Data::Gll(None)
-        | Data::Vtg(None)
-        | Data::Vhw(_)
-        | Data::Hbt(_) => None,
+        Data::Vhw(vhw) => vhw.water_speed_kn.map(|kn| Reading::WaterSpeed { kn }),
+        Data::Rmc(None) | Data::Gga(None) | Data::Gll(None) | Data::Vtg(None) | Data::Hbt(_) => {
+            None
+        }
     };
     if let Some(reading) = reading {
         each(reading);
@@ -164,7 +162,6 @@ mod tests {
             "GPGLL,4330.0,N,00515.0,E,120000,V",
             "GPVTG,90.0,T,,M,5.0,N,9.3,K,N",
             "GPZDA,120000,,,,,",
-            "IIVHW,90.0,T,80.0,M,5.0,N,9.3,K",
             "HEHBT,30,A,9",
         ] {
             assert_eq!(read(body), [], "{body}");
@@ -216,6 +213,13 @@ mod tests {
         let speed = Reading::Speed { sog_kn: 5.0 };
         assert_eq!(read("GPVTG,90.0,T,,M,5.0,N,9.3,K,A"), [speed, course]);
         assert_eq!(read("GPVTG,,T,85.0,M,5.0,N,9.3,K,A"), [speed]);
+    }
+
+    #[test]
+    fn a_log_gives_its_speed_and_no_heading() {
+        let speed = Reading::WaterSpeed { kn: 5.0 };
+        assert_eq!(read("IIVHW,90.0,T,80.0,M,5.0,N,9.3,K"), [speed]);
+        assert_eq!(read("IIVHW,90.0,T,80.0,M,,N,,K"), []);
     }
 
     #[test]

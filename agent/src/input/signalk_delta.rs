@@ -22,7 +22,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Paths to subscribe to.
-pub(super) const PATHS: [&str; 12] = [
+pub(super) const PATHS: [&str; 13] = [
     "navigation.headingCompass",
     "navigation.headingMagnetic",
     "navigation.headingTrue",
@@ -32,6 +32,7 @@ pub(super) const PATHS: [&str; 12] = [
     "navigation.attitude",
     "navigation.position",
     "navigation.speedOverGround",
+    "navigation.speedThroughWater",
     "navigation.courseOverGroundTrue",
     "environment.outside.temperature",
     "navigation.datetime",

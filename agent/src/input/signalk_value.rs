@@ -85,6 +85,15 @@ pub(super) fn read_standalone(
             let sog_kn = speed_m_s * KNOTS_A_METRE_PER_SECOND;
             push(b"VTG", Reading::Speed { sog_kn });
         }
+        "navigation.speedThroughWater" => {
+            let speed_m_s = number(value)?;
+            // Some logs give a speed astern.
+            if speed_m_s.abs() > MAX_SPEED_M_S {
+                return Err(InvalidValue);
+            }
+            let kn = speed_m_s * KNOTS_A_METRE_PER_SECOND;
+            push(b"VHW", Reading::WaterSpeed { kn });
+        }
         "navigation.courseOverGroundTrue" => {
             let course = direction_deg(value)?.and_then(CourseOverGround::new);
             push(b"VTG", Reading::Course(course.ok_or(InvalidValue)?));

@@ -248,6 +248,7 @@ fn value_text(reading: &Reading) -> String {
         Reading::Greeting(at) => format!("greeting at {at}"),
         Reading::Speed { sog_kn } => format!("{sog_kn:.1} kn"),
         Reading::Course(course) => format!("course {:.1}°", course.degrees()),
+        Reading::WaterSpeed { kn } => format!("{kn:.1} kn through the water"),
         Reading::RateOfTurn { deg_min } => format!("{deg_min:.1}°/min"),
         Reading::Roll { deg } => format!("roll {deg:.1}°"),
         Reading::Temperature { celsius } => format!("{celsius:.1} °C"),

@@ -1,7 +1,9 @@
-//! Instruments: observations of sources, their age, the roles that rank them, and the GNSS clock.
+//! Instruments: observations of sources, their age, the roles that rank them, the GNSS clock, and
+//! the guard against false fixes.
 
 mod clock_checkpoint;
 mod gnss_clock;
+mod gnss_guard;
 mod heard;
 mod independence;
 mod observation;
@@ -14,6 +16,7 @@ mod stated_clock;
 mod two_sensors;
 
 pub(crate) use clock_checkpoint::ClockCheckpoint;
+pub(crate) use gnss_guard::{GnssGuard, Interference, ReckonedPlace, offset};
 pub(crate) use heard::{HeardSource, HeardSources, SourceReport};
 pub(crate) use independence::Independence;
 pub(crate) use observation::{Observation, RECORDED_TIME, Reading, is_recorded_time};

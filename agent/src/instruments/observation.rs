@@ -85,6 +85,11 @@ pub(crate) enum Reading {
         /// Knots.
         sog_kn: f64,
     },
+    /// VHW: speed through the water.
+    WaterSpeed {
+        /// Knots.
+        kn: f64,
+    },
     /// VTG or RMC: course over ground, which is never a heading.
     Course(CourseOverGround),
     /// ROT with status A: degrees a minute, starboard positive.

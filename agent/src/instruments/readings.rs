@@ -65,13 +65,19 @@ impl Readings {
             Signal::SatelliteInvalid | Signal::Refused(Instrument::Satellite, _) => {
                 self.satellite = None;
             }
-            Signal::Position(value) => replace(&mut self.position, value, measured),
+            Signal::Position(value) | Signal::Reckoned(value) => {
+                replace(&mut self.position, value, measured);
+            }
             Signal::Speed(value) => replace(&mut self.sog_kn, value, measured),
             Signal::RateOfTurn(value) => {
                 replace(&mut self.rate_of_turn_deg_min, value, measured);
             }
             Signal::Roll(value) => replace(&mut self.roll_deg, value, measured),
-            Signal::Time(_) | Signal::Jump(_) | Signal::Course(_) | Signal::Temperature(_) => {}
+            Signal::Time(_)
+            | Signal::Jump(_)
+            | Signal::Course(_)
+            | Signal::WaterSpeed(_)
+            | Signal::Temperature(_) => {}
         }
     }
 

@@ -21,17 +21,21 @@ impl Agent {
         })
     }
 
-    pub(super) fn correct(&self) -> (CorrectedHeading, Vec<CardRow>) {
+    pub(super) fn correct(&mut self) -> (CorrectedHeading, Vec<CardRow>) {
+        let place = self.acquisition.place(Instant::now());
         let withdrawn = self.card_withdrawal();
         let model = self.uplink_handle.model.borrow();
         let now = Instant::now();
         let readings = &self.acquisition.readings;
         let compass_age = self.silence.compass_steering(readings.compass_interval());
-        let position_age = self.silence.position_steering();
+        let is_silent = self
+            .silence
+            .position_steering()
+            .is_some_and(|age| Latest::within(readings.position, age, now).is_none());
         let inputs = CorrectionInputs {
             compass: Latest::within(readings.compass, compass_age, now),
             compass_is_mixed: readings.compass_is_mixed,
-            position: Latest::within(readings.position, position_age, now),
+            place: place.filter(|_| !is_silent),
             time: self.acquisition.time(),
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
@@ -50,6 +54,7 @@ impl Agent {
     pub(super) fn send_heading(&mut self) {
         let (corrected, _) = self.correct();
         self.withheld = corrected.is_withheld();
+        self.acquisition.note_corrected(corrected.true_deg);
         let quality = self.model_status().map(|model| Quality {
             version: model.version,
             age_days: model.age_days.unwrap_or_default(),

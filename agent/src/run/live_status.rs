@@ -8,11 +8,11 @@ use tokio::time::Instant;
 
 impl Agent {
     /// Builds the live status.
-    pub(super) async fn build_status(&self) -> Status {
+    pub(super) async fn build_status(&mut self) -> Status {
         let now = Instant::now();
         let stale = self.silence.stale_s.duration();
-        let readings = &self.acquisition.readings;
         let (heading, card) = self.correct();
+        let readings = &self.acquisition.readings;
         let mut status = offline_status(&self.spool).await.unwrap_or_default();
         status.running = true;
         status.ship_time = self.acquisition.time();
@@ -36,6 +36,7 @@ impl Agent {
         status.raw_log = self.raw_log.status();
         status.sources = self.acquisition.sources(now);
         status.source_problems = self.acquisition.source_problems(now);
+        status.gnss_interference = self.acquisition.interference().map(Into::into);
         status.clock_problem = self.acquisition.clock_problem();
         status.storage_problem = self.unstored.problem.as_ref().map(|problem| {
             let waiting = self.unstored.samples.len();

@@ -67,6 +67,8 @@ pub(crate) struct Sampler {
     rate_of_turn: (f64, u32),
     details: DetailReadings,
     position: Option<LastValue<Position>>,
+    /// Set if the open window has a place by dead reckoning.
+    is_reckoned: bool,
     speed: Option<LastValue<f64>>,
     turns: TurnTracker,
     /// Last window with gyro or satellite compass; the first window before there is one.
@@ -101,6 +103,7 @@ impl Sampler {
             rate_of_turn: (0.0, 0),
             details: DetailReadings::default(),
             position: None,
+            is_reckoned: false,
             speed: None,
             turns: TurnTracker::default(),
             referenced: None,
@@ -136,7 +139,13 @@ impl Sampler {
             Signal::Refused(Instrument::Compass, refusal) => self.compass.refuse(refusal),
             Signal::Refused(Instrument::Gyro, refusal) => self.gyro.refuse(refusal),
             Signal::Refused(Instrument::Satellite, refusal) => self.satellite.refuse(refusal),
-            Signal::Position(position) => self.position = self.last_value(position),
+            Signal::Position(position) => {
+                self.position = self.last_value(position);
+            }
+            Signal::Reckoned(position) => {
+                self.position = self.last_value(position);
+                self.is_reckoned = true;
+            }
             Signal::Speed(knots) if SPEED_KN.contains(&knots) => {
                 self.speed = self.last_value(knots);
             }
@@ -146,7 +155,7 @@ impl Sampler {
             Signal::Course(course) => self.details.add_course(course),
             Signal::Roll(degrees) => self.details.add_roll(degrees),
             Signal::Temperature(celsius) => self.details.add_temperature(celsius),
-            Signal::Speed(_) | Signal::RateOfTurn(_) => {}
+            Signal::Speed(_) | Signal::RateOfTurn(_) | Signal::WaterSpeed(_) => {}
         }
     }
 
@@ -219,6 +228,7 @@ impl Sampler {
         self.rate_of_turn = (0.0, 0);
         self.details = DetailReadings::default();
         self.position = None;
+        self.is_reckoned = false;
         self.speed = None;
         self.turns = TurnTracker::default();
         self.referenced = None;
@@ -243,6 +253,7 @@ impl Sampler {
         self.satellite.close();
         self.rate_of_turn = (0.0, 0);
         self.details = DetailReadings::default();
+        self.is_reckoned = false;
     }
 
     /// Returns the means of the window, or the first reason to reject it.
@@ -300,6 +311,7 @@ impl Sampler {
             gyro_deg: gyro.map(degrees),
             satellite_deg: satellite.map(degrees),
             position,
+            is_reckoned: self.is_reckoned,
             sog_kn,
             rate_of_turn_deg_min: rate,
             details,

@@ -28,6 +28,8 @@ pub(crate) enum Outcome {
     UnprovenReference,
     /// Two sensors that read differently send as one.
     TwoSensors,
+    /// The only reference is a satellite compass, whose receiver is disturbed.
+    GnssInterference,
     /// No fresh position.
     NoPosition,
     /// No fresh speed.
@@ -53,11 +55,12 @@ impl Outcome {
             Refusal::NotIndependent => Outcome::NotIndependent,
             Refusal::Unproven => Outcome::UnprovenReference,
             Refusal::TwoSensors => Outcome::TwoSensors,
+            Refusal::Interference => Outcome::GnssInterference,
         }
     }
 }
 
-const ALL: [(Outcome, &str); 19] = [
+const ALL: [(Outcome, &str); 20] = [
     (Outcome::Accepted, "accepted"),
     (Outcome::ExcludedBerthed, "hold_berthed"),
     (Outcome::ExcludedMagneticCargo, "hold_magnetic_cargo"),
@@ -69,6 +72,7 @@ const ALL: [(Outcome, &str); 19] = [
     (Outcome::NotIndependent, "not_independent"),
     (Outcome::UnprovenReference, "unproven_reference"),
     (Outcome::TwoSensors, "two_sensors"),
+    (Outcome::GnssInterference, "gnss_interference"),
     (Outcome::NoPosition, "no_position"),
     (Outcome::NoSpeed, "no_speed"),
     (Outcome::Sparse, "sparse"),

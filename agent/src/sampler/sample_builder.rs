@@ -33,6 +33,8 @@ pub(crate) struct Window {
     pub(crate) gyro_deg: Option<f64>,
     pub(crate) satellite_deg: Option<f64>,
     pub(crate) position: Position,
+    /// Set if the position is by dead reckoning.
+    pub(crate) is_reckoned: bool,
     pub(crate) sog_kn: f64,
     pub(crate) rate_of_turn_deg_min: Option<f64>,
     pub(crate) details: Details,
@@ -94,6 +96,7 @@ impl SampleBuilder {
             && window.index - last.index <= MAX_GAP_WINDOWS
             && wrap_180(window.compass_deg - first.compass_deg).abs() <= MAX_HEADING_CHANGE_DEG
             && first.has_reference() == window.has_reference()
+            && first.is_reckoned == window.is_reckoned
             && !self.changes_source(window)
     }
 
@@ -134,6 +137,7 @@ fn build_sample(windows: &[Window]) -> Option<Sample> {
         temperature_c: mean(kept.iter().filter_map(|w| w.details.temperature_c)),
         gyro_source: gyro.and_then(|_| first_of(&kept, |w| w.gyro_source)),
         satellite_source: satellite.and_then(|_| first_of(&kept, |w| w.satellite_source)),
+        position_reckoned: first.is_reckoned,
         ..Sample::new(time, position, CompassHeading::new(compass_deg)?)
     })
 }
@@ -274,6 +278,7 @@ mod tests {
             gyro_deg,
             satellite_deg: None,
             position: Position::new(43.0, index as f64 * 1e-3).unwrap(),
+            is_reckoned: false,
             sog_kn: 12.0,
             rate_of_turn_deg_min: Some(0.5),
             details: Details::default(),

@@ -8,7 +8,7 @@ pub(crate) use offline::offline_status;
 use crate::alert::AlertStatus;
 use crate::corrected_heading::{CardRow, CorrectedHeading};
 use crate::input::InputStatus;
-use crate::instruments::SourceReport;
+use crate::instruments::{Interference, SourceReport};
 use crate::raw_log::RawLogStatus;
 use crate::sampler::Exclusion;
 use crate::spool::{BudgetAccount, SpoolStatus};
@@ -20,6 +20,7 @@ use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// Status of the agent, as the page shows it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -35,6 +36,9 @@ pub(crate) struct Status {
     /// Fault of the receiver's time.
     #[serde(default)]
     pub(crate) clock_problem: Option<String>,
+    /// Interference with the receivers of satellites, while it lasts.
+    #[serde(default)]
+    pub(crate) gnss_interference: Option<InterferenceStatus>,
     /// Sources that must not be used as they are configured, and why.
     #[serde(default)]
     pub(crate) source_problems: Vec<String>,
@@ -72,6 +76,37 @@ pub(crate) struct Status {
     /// Raw log.
     #[serde(default, rename = "ring")]
     pub(crate) raw_log: Option<RawLogStatus>,
+}
+
+/// Interference with the receivers of satellites.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct InterferenceStatus {
+    /// Start, by GNSS time; none if that was not known.
+    pub(crate) since: Option<Timestamp>,
+    /// Last place that was trusted.
+    pub(crate) place: Position,
+}
+
+impl From<Interference> for InterferenceStatus {
+    fn from(of: Interference) -> InterferenceStatus {
+        InterferenceStatus {
+            since: of.since,
+            place: of.place,
+        }
+    }
+}
+
+impl fmt::Display for InterferenceStatus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("GNSS interference")?;
+        if let Some(since) = self.since {
+            write!(f, " since {}", since.to_chrono().format("%d %b %H:%M UTC"))?;
+        }
+        f.write_str(
+            ": position, speed and satellite compass are not used; the heading is corrected for \
+             the reckoned place",
+        )
+    }
 }
 
 /// Model in use.

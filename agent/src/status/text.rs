@@ -35,6 +35,9 @@ impl Status {
                 writeln!(out, "{what:<11}{problem}")?;
             }
         }
+        if let Some(interference) = &self.gnss_interference {
+            writeln!(out, "GNSS       {interference}")?;
+        }
         for problem in &self.source_problems {
             writeln!(out, "SOURCES    {problem}")?;
         }
@@ -198,7 +201,9 @@ mod tests {
     use crate::instruments::SourceReport;
     use crate::sampler::Exclusion;
     use crate::spool::{BudgetAccount, SpoolStatus};
+    use crate::status::InterferenceStatus;
     use binnacle_compass::model::ReferenceGrade;
+    use binnacle_compass::position::Position;
     use binnacle_compass::time::Timestamp;
 
     #[test]
@@ -216,6 +221,10 @@ mod tests {
             }),
             clock_problem: Some("the receiver's time jumped".to_owned()),
             storage_problem: Some("samples cannot be stored".to_owned()),
+            gnss_interference: Some(InterferenceStatus {
+                since: Timestamp::parse("2026-11-20T06:30:00Z").ok(),
+                place: Position::new(36.0, 15.0).unwrap(),
+            }),
             source_problems: vec!["gyro: two sensors".to_owned()],
             sources: vec![SourceReport {
                 input: "bridge".to_owned(),
@@ -251,6 +260,7 @@ mod tests {
             "no gyro or satellite compass checks it",
             "CLOCK      the receiver's time jumped\n",
             "STORAGE    samples cannot be stored\n",
+            "GNSS       GNSS interference since 20 Nov 06:30 UTC",
             "SOURCES    gyro: two sensors\n",
             "source     bridge HCHDG  10.0/s  compass 090.0° [compass]\n",
             "not corrected: there is no model yet",

@@ -14,6 +14,7 @@ mod verdict;
 use super::record::AlertRecord;
 use crate::config::AlertConfig;
 use crate::corrected_heading::{CorrectionInputs, predict};
+use crate::instruments::ReckonedPlace;
 use crate::sampler::{WINDOW_S, Window};
 use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::time::Timestamp;
@@ -156,7 +157,7 @@ impl AlertMonitor {
         let corrected = predict(CorrectionInputs {
             compass: CompassHeading::new(window.compass_deg),
             compass_is_mixed: false,
-            position: Some(window.position),
+            place: Some(ReckonedPlace::exactly(window.position)),
             time: Some(now),
             model: Some(model),
             withdrawn: None,

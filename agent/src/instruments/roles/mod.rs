@@ -41,6 +41,10 @@ pub(crate) enum Signal {
     Refused(Instrument, Refusal),
     /// Fix.
     Position(Position),
+    /// Place by dead reckoning, while the fixes are not trusted.
+    Reckoned(Position),
+    /// Speed through the water, knots.
+    WaterSpeed(f64),
     /// Speed over ground, knots.
     Speed(f64),
     /// Course over ground.
@@ -70,6 +74,8 @@ pub(crate) enum Refusal {
     Unproven,
     /// It comes from two sensors that read differently.
     TwoSensors,
+    /// It is of a receiver that is disturbed.
+    Interference,
 }
 
 /// Heading of a reference, and the source that gave it.
@@ -87,6 +93,7 @@ pub(crate) struct Roles {
     satellite: Role,
     position: Role,
     rate_of_turn: Role,
+    log: Role,
     roll: Role,
     temperature: Role,
     clock: GnssClock,
@@ -110,6 +117,7 @@ impl Roles {
                 &config.rate_of_turn,
                 sampled(silence.rate_of_turn),
             ),
+            log: Role::new("log", &config.log, sampled(silence.log)),
             roll: Role::new("roll", &config.roll, sampled(silence.roll)),
             temperature: Role::new(
                 "temperature",
@@ -178,6 +186,7 @@ impl Roles {
             &self.satellite,
             &self.position,
             &self.rate_of_turn,
+            &self.log,
             &self.roll,
             &self.temperature,
         ]
@@ -241,6 +250,10 @@ impl Roles {
             Reading::RateOfTurn { deg_min } => {
                 let used = self.rate_of_turn.note_reading(seen, moment).source();
                 single(used.map(|_| Signal::RateOfTurn(deg_min)))
+            }
+            Reading::WaterSpeed { kn } => {
+                let used = self.log.note_reading(seen, moment).source();
+                single(used.map(|_| Signal::WaterSpeed(kn)))
             }
             Reading::Roll { deg } => {
                 let used = self.roll.note_reading(seen, moment).source();

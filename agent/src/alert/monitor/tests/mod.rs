@@ -3,6 +3,7 @@
 use super::*;
 use crate::config::GyroError;
 use crate::corrected_heading::predict;
+use crate::instruments::ReckonedPlace;
 use crate::sampler::Details;
 use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::position::Position;
@@ -86,7 +87,7 @@ impl Ship {
             let right = predict(CorrectionInputs {
                 compass_is_mixed: false,
                 compass: reading,
-                position: Some(position),
+                place: Some(ReckonedPlace::exactly(position)),
                 time: end_of(START),
                 model: Some(&self.card),
                 withdrawn: None,
@@ -95,6 +96,7 @@ impl Ship {
             });
             let gyro_deg = right.true_deg.unwrap().degrees();
             let window = Window {
+                is_reckoned: false,
                 index: self.index,
                 compass_deg: (heading_deg + errors.compass_deg + noise_deg).rem_euclid(360.0),
                 gyro_deg: Some(gyro_deg),
@@ -186,6 +188,7 @@ fn the_limit_is_the_band_and_the_gyros_error_and_grows_towards_the_poles() {
     let ship = ship();
     let limit_deg = |lat: f64| {
         let window = Window {
+            is_reckoned: false,
             index: START + 1,
             compass_deg: 90.0,
             gyro_deg: Some(90.0),

@@ -28,6 +28,7 @@ fn sail_without_gyro(ship: &mut Ship, windows: i64, departure_deg: f64) {
     for _ in 0..windows {
         ship.index += 1;
         let window = Window {
+            is_reckoned: false,
             index: ship.index,
             compass_deg: 90.0 + departure_deg,
             gyro_deg: None,
