@@ -1,4 +1,4 @@
-//! NMEA 0183 and IEC 61162-450 sentences, read and written.
+//! NMEA 0183 and IEC 61162-450 sentences, read and written; NMEA 2000 in [`n2k`].
 //!
 //! Invariants:
 //! - An empty field is `None`, never zero. Values that a status or mode
@@ -9,8 +9,8 @@
 //!   used.
 //! - Numbers keep six decimals (positions a ten-millionth of a minute).
 //!   [`parse()`] reads back exactly the value that [`write()`] printed.
-//! - Nothing is allocated outside the caller's buffers, memory is bounded for
-//!   any input, and no bytes cause a panic.
+//! - Sentences allocate nothing outside the caller's buffers. Memory is bounded
+//!   for any input, and no bytes cause a panic.
 //!
 //! ```
 //! use binnacle_nmea::{Data, parse};

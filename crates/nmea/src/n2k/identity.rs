@@ -1,4 +1,4 @@
-//! Identity of devices on an NMEA 2000 bus.
+//! Identity of devices on a bus.
 
 use std::fmt;
 
@@ -44,6 +44,16 @@ impl fmt::Display for Address {
 pub struct Name(u64);
 
 impl Name {
+    /// Takes the 64 bits of an address claim.
+    pub fn from_number(number: u64) -> Name {
+        Name(number)
+    }
+
+    /// The 64 bits.
+    pub fn number(self) -> u64 {
+        self.0
+    }
+
     /// Reads 16 hexadecimal digits.
     pub fn parse(text: &str) -> Option<Name> {
         let is_hex = text.len() == NAME_DIGITS && text.bytes().all(|b| b.is_ascii_hexdigit());
