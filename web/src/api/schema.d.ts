@@ -3440,7 +3440,7 @@ export interface components {
          * @description Cause of an alert: one compass has at most one open alert of each.
          * @enum {string}
          */
-        AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "alignment" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "adjustment_not_confirmed" | "agreed_job_at_risk" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
+        AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "alignment" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "gnss_interference" | "unknown_change" | "adjustment_not_confirmed" | "agreed_job_at_risk" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
         /**
          * Format: uuid
          * @description Id of an alert.
@@ -4545,7 +4545,7 @@ export interface components {
          * @description Cause of a change.
          * @enum {string}
          */
-        ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "compass_fault" | "alignment" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown";
+        ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "compass_fault" | "alignment" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "gnss_interference" | "unknown";
         /** @description New minimum severity of a recipient. */
         ChangedMailRecipient: {
             /** @description Minimum severity of the alerts sent. */
@@ -5613,6 +5613,8 @@ export interface components {
             id: components["schemas"]["VesselId"];
             /** @description Its IMO number, seven digits. */
             imo_number: string | null;
+            /** @description GNSS interference that it met in the last fortnight, the earliest first. */
+            interference: components["schemas"]["GnssInterference"][];
             last_upload_at: components["schemas"]["Time"] | null;
             model: components["schemas"]["FleetModel"] | null;
             /** @description Its name. */
@@ -5704,6 +5706,22 @@ export interface components {
              * @description Share for the constant, 0 to 1.
              */
             constant_deg: number;
+        };
+        /** @description Interference that a vessel met. */
+        GnssInterference: {
+            /** @description Start. */
+            began_at: components["schemas"]["Time"];
+            ended_at: components["schemas"]["Time"] | null;
+            /**
+             * Format: double
+             * @description Latitude of its middle by dead reckoning, degrees north.
+             */
+            lat: number;
+            /**
+             * Format: double
+             * @description Longitude, degrees east.
+             */
+            lon: number;
         };
         /**
          * @description Place where the gyro's error from the ship's motion over the turning earth is corrected.
@@ -8542,6 +8560,12 @@ export interface components {
              */
             lon: number;
             /**
+             * @description True if the position is by dead reckoning, because the receivers of satellites were
+             *     disturbed. No estimate uses such a sample.
+             * @default false
+             */
+            position_reckoned: boolean;
+            /**
              * Format: double
              * @description Predicted deviation on this compass heading at this place, degrees.
              */
@@ -8672,7 +8696,7 @@ export interface components {
          * @description Reason for the rejection or reduced weight of a sample.
          * @enum {string}
          */
-        SampleReason: "no_reference" | "reference_failed" | "compass_stuck" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "disturbance" | "outlier" | "no_model" | "too_slow_for_course" | "turning_course";
+        SampleReason: "no_reference" | "reference_failed" | "compass_stuck" | "gnss_interference" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "disturbance" | "outlier" | "no_model" | "too_slow_for_course" | "turning_course";
         /** @description The current plan and its state. */
         Schedule: {
             outdated_since: components["schemas"]["Time"] | null;
