@@ -145,6 +145,10 @@ impl Acquisition {
             self.clocks.note_greeting(&seen.source.input, at, heard);
             return;
         }
+        // Commands are for the agent's alerts; they are no reading of an instrument.
+        if matches!(seen.reading, Reading::AlertCommand(_)) {
+            return;
+        }
         let age = self.clocks.age(&seen.source, seen.stated, heard);
         let is_echo = self.own_output.is_echo(seen, heard);
         let seconds = self.seconds(heard);

@@ -55,6 +55,7 @@ pub(super) fn readings(data: &Data, mut each: impl FnMut(Reading)) {
             temperature(*air_temperature_c)
         }
         Data::Mta(mta) => temperature(mta.air_temperature_c),
+        Data::Acn(acn) => Some(Reading::AlertCommand(*acn)),
         Data::Vhw(vhw) => vhw.water_speed_kn.map(|kn| Reading::WaterSpeed { kn }),
         Data::Rmc(None) | Data::Gga(None) | Data::Gll(None) | Data::Vtg(None) | Data::Hbt(_) => {
             None

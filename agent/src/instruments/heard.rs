@@ -253,5 +253,6 @@ fn value_text(reading: &Reading) -> String {
         Reading::Roll { deg } => format!("roll {deg:.1}°"),
         Reading::Temperature { celsius } => format!("{celsius:.1} °C"),
         Reading::Pitch { deg } => format!("pitch {deg:.1}°"),
+        Reading::AlertCommand(_) => "command to an alert".to_owned(),
     }
 }

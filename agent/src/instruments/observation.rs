@@ -10,6 +10,7 @@ use binnacle_compass::angle::{
 };
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
+use binnacle_nmea::sentence::Acn;
 
 /// Talker and sentence of a time that the recording gave, not an instrument.
 pub(crate) const RECORDED_TIME: ([u8; 2], [u8; 3]) = (*b"--", *b"LOG");
@@ -107,6 +108,8 @@ pub(crate) enum Reading {
         /// Degrees Celsius.
         celsius: f64,
     },
+    /// ACN: a command of the bridge to an alert, its own or another equipment's.
+    AlertCommand(Acn),
     /// Pitch, degrees, bow up positive.
     Pitch {
         /// Degrees.

@@ -1,6 +1,7 @@
 //! IEC 61162-450 datagrams: a header, then lines of TAG blocks and sentences.
 
 use crate::rejected::Rejected;
+use crate::tag::{Tag, write_tag};
 
 /// The header of a datagram that carries sentences.
 pub const HEADER: &[u8; 6] = b"UdPbC\0";
@@ -15,6 +16,16 @@ pub fn lines(datagram: &[u8]) -> Result<impl Iterator<Item = &[u8]>, Rejected> {
     Ok(text
         .split(|&byte| byte == b'\n' || byte == b'\r')
         .filter(|line| !line.is_empty()))
+}
+
+/// Appends a line to a datagram, which begins with its header: a TAG block and a sentence with its
+/// line end.
+pub fn write_line(tag: &Tag<'_>, sentence: &[u8], datagram: &mut Vec<u8>) {
+    if datagram.is_empty() {
+        datagram.extend_from_slice(HEADER);
+    }
+    write_tag(tag, datagram);
+    datagram.extend_from_slice(sentence);
 }
 
 #[cfg(test)]
@@ -32,6 +43,22 @@ mod tests {
             let tagged = parse_tagged(line).unwrap();
             assert_eq!(tagged.tag.source, Some(&b"HE0001"[..]));
         }
+    }
+
+    #[test]
+    fn a_written_datagram_has_one_header_and_a_tag_block_a_line() {
+        let mut datagram = Vec::new();
+        for (count, sentence) in [(1, "$GPHDT,274.07,T*03\r\n"), (2, "$HEROT,-1.5,A*02\r\n")] {
+            let tag = Tag {
+                source: Some(b"HE0001"),
+                line_count: Some(count),
+                ..Tag::default()
+            };
+            write_line(&tag, sentence.as_bytes(), &mut datagram);
+        }
+        let expected: &[u8] =
+            b"UdPbC\0\\s:HE0001,n:1*0C\\$GPHDT,274.07,T*03\r\n\\s:HE0001,n:2*0F\\$HEROT,-1.5,A*02\r\n";
+        assert_eq!(datagram, expected, "{}", datagram.escape_ascii());
     }
 
     #[test]

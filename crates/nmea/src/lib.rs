@@ -23,6 +23,7 @@
 //! assert_eq!(hdg.variation_deg_east, Some(12.6));
 //! ```
 
+pub mod alert;
 pub mod datagram;
 pub mod lines;
 pub mod n2k;

@@ -1,11 +1,12 @@
 //! Reads one sentence.
 
+use crate::alert::{AlertCommand, AlertId};
 use crate::checksum;
 use crate::fields::Fields;
 use crate::rejected::Rejected;
 use crate::sentence::{
-    Data, Gga, Gll, Hbt, Hdg, Hdm, Hdt, Kind, Mta, Rmc, Rot, Sentence, Ths, ThsMode, Vhw, Vtg, Xdr,
-    Zda,
+    Acn, Data, Gga, Gll, Hbt, Hdg, Hdm, Hdt, Kind, Mta, Rmc, Rot, Sentence, Ths, ThsMode, Vhw, Vtg,
+    Xdr, Zda,
 };
 use crate::time::Date;
 
@@ -76,6 +77,7 @@ fn data(kind: Kind, mut fields: Fields<'_>) -> Result<Data, Rejected> {
         Kind::Xdr => Data::Xdr(xdr(fields)?),
         Kind::Mta => Data::Mta(mta(fields)?),
         Kind::Hbt => Data::Hbt(hbt(fields)?),
+        Kind::Acn => Data::Acn(acn(fields)?),
     })
 }
 
@@ -247,4 +249,37 @@ fn hbt(fields: &mut Fields<'_>) -> Result<Hbt, Rejected> {
         normal: fields.status()?,
         sequence: fields.integer("sequence", 9)?.map(|count| count as u8),
     })
+}
+
+fn acn(fields: &mut Fields<'_>) -> Result<Acn, Rejected> {
+    let time = fields.time()?;
+    let manufacturer = match fields.text() {
+        b"" => None,
+        text => Some(mnemonic(text).ok_or(fields.bad("manufacturer"))?),
+    };
+    let number = fields.integer("alert identifier", 9_999_999)?;
+    let alert = AlertId {
+        manufacturer,
+        number: number.ok_or(fields.bad("alert identifier"))?,
+        instance: fields.integer("instance", 999_999)?,
+    };
+    let command = fields
+        .letter("command")?
+        .and_then(AlertCommand::from_letter);
+    let command = command.ok_or(fields.bad("command"))?;
+    if fields.text() != b"C" {
+        return Err(fields.bad("status flag"));
+    }
+    Ok(Acn {
+        time,
+        alert,
+        command,
+    })
+}
+
+/// Three capital letters or digits.
+fn mnemonic(text: &[u8]) -> Option<[u8; 3]> {
+    let is_plain = |byte: &u8| byte.is_ascii_uppercase() || byte.is_ascii_digit();
+    let mnemonic: [u8; 3] = text.try_into().ok()?;
+    mnemonic.iter().all(is_plain).then_some(mnemonic)
 }

@@ -2,6 +2,7 @@
 //!
 //! Directions are degrees in [0, 360); differences are positive to the east.
 
+use crate::alert::{AlertCommand, AlertId};
 use crate::time::{Date, TimeOfDay, unix_micros};
 
 /// A sentence that was read, or is to be written.
@@ -48,6 +49,8 @@ pub enum Data {
     Mta(Mta),
     /// Heartbeat.
     Hbt(Hbt),
+    /// Command to an alert.
+    Acn(Acn),
 }
 
 /// HDG: the sensor's reading before deviation, and its own deviation and
@@ -269,6 +272,17 @@ pub struct Hbt {
     pub sequence: Option<u8>,
 }
 
+/// ACN with status flag C: without it the sentence is no command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Acn {
+    /// Time at which the command was sent, UTC.
+    pub time: Option<TimeOfDay>,
+    /// Alert that it is for.
+    pub alert: AlertId,
+    /// Command.
+    pub command: AlertCommand,
+}
+
 /// The kind of a sentence: its three letters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "each is named after its sentence, see Data")]
@@ -287,11 +301,12 @@ pub enum Kind {
     Xdr,
     Mta,
     Hbt,
+    Acn,
 }
 
 impl Kind {
     /// All kinds, in the order of their declaration.
-    pub const ALL: [Kind; 14] = [
+    pub const ALL: [Kind; 15] = [
         Kind::Hdg,
         Kind::Hdm,
         Kind::Hdt,
@@ -306,6 +321,7 @@ impl Kind {
         Kind::Xdr,
         Kind::Mta,
         Kind::Hbt,
+        Kind::Acn,
     ];
 
     /// The kind that three letters name.
@@ -325,6 +341,7 @@ impl Kind {
             b"XDR" => Kind::Xdr,
             b"MTA" => Kind::Mta,
             b"HBT" => Kind::Hbt,
+            b"ACN" => Kind::Acn,
             _ => return None,
         })
     }
@@ -346,6 +363,7 @@ impl Kind {
             Kind::Xdr => "XDR",
             Kind::Mta => "MTA",
             Kind::Hbt => "HBT",
+            Kind::Acn => "ACN",
         }
     }
 
@@ -374,6 +392,7 @@ impl Data {
             Data::Xdr(_) => Kind::Xdr,
             Data::Mta(_) => Kind::Mta,
             Data::Hbt(_) => Kind::Hbt,
+            Data::Acn(_) => Kind::Acn,
         }
     }
 }

@@ -18,8 +18,12 @@ const FIRST_MILLISECONDS: i64 = 100_000_000_000;
 pub struct Tag<'a> {
     /// `s:`, the sender (IEC 61162-450 system function, `HE0001`).
     pub source: Option<&'a [u8]>,
+    /// `d:`, the system function that the sentence is for.
+    pub destination: Option<&'a [u8]>,
     /// `c:`, the sender's clock, in microseconds since 1970 UTC.
     pub unix_micros: Option<i64>,
+    /// `n:`, the sender's count of lines, 1 to 999.
+    pub line_count: Option<u16>,
 }
 
 /// A sentence and the TAG blocks before it.
@@ -59,16 +63,27 @@ pub fn parse_tagged(line: &[u8]) -> Result<Tagged<'_>, Rejected> {
 pub fn write_tag(tag: &Tag<'_>, out: &mut Vec<u8>) {
     out.push(b'\\');
     let start = out.len();
-    if let Some(source) = tag.source {
-        out.extend_from_slice(b"s:");
-        out.extend_from_slice(source);
-    }
-    if let Some(micros) = tag.unix_micros {
-        if tag.source.is_some() {
+    let parameter = |name: u8, out: &mut Vec<u8>| {
+        if out.len() > start {
             out.push(b',');
         }
-        out.extend_from_slice(b"c:");
+        out.extend_from_slice(&[name, b':']);
+    };
+    if let Some(source) = tag.source {
+        parameter(b's', out);
+        out.extend_from_slice(source);
+    }
+    if let Some(destination) = tag.destination {
+        parameter(b'd', out);
+        out.extend_from_slice(destination);
+    }
+    if let Some(micros) = tag.unix_micros {
+        parameter(b'c', out);
         print::digits(out, clock(micros.max(0)), 1);
+    }
+    if let Some(count) = tag.line_count {
+        parameter(b'n', out);
+        print::digits(out, u64::from(count), 1);
     }
     let sum = checksum::compute(&out[start..]);
     checksum::append(sum, out);
@@ -92,14 +107,22 @@ fn read_block<'a>(block: &'a [u8], tag: &mut Tag<'a>) -> Result<(), Rejected> {
     for parameter in body.split(|&byte| byte == b',') {
         match parameter {
             [b's', b':', source @ ..] => tag.source = Some(source),
+            [b'd', b':', destination @ ..] => tag.destination = Some(destination),
+            [b'n', b':', count @ ..] => tag.line_count = line_count(count),
             [b'c', b':', clock @ ..] => {
                 tag.unix_micros = Some(unix_micros(clock).ok_or(Rejected::BadTagBlock)?);
             }
-            // Groups, destinations, line counts and texts are not needed here.
+            // Groups and texts are not needed here.
             _ => {}
         }
     }
     Ok(())
+}
+
+/// Up to three digits; `None` where they are not understood: no reading depends on them.
+fn line_count(text: &[u8]) -> Option<u16> {
+    let text = std::str::from_utf8(text).ok()?;
+    text.parse().ok().filter(|count| *count <= 999)
 }
 
 /// Whole seconds or milliseconds since 1970.
@@ -145,8 +168,10 @@ mod tests {
 
     #[test]
     fn source_and_clock_come_through_among_other_parameters() {
-        let line = tagged("g:1-2-1234,s:HE0001,n:17,c:1700000000");
+        let line = tagged("g:1-2-1234,s:HE0001,d:EI0001,n:17,c:1700000000");
         let tag = parse_tagged(&line).unwrap().tag;
+        assert_eq!(tag.destination, Some(&b"EI0001"[..]));
+        assert_eq!(tag.line_count, Some(17));
         assert_eq!(tag.source, Some(&b"HE0001"[..]));
         assert_eq!(tag.unix_micros, Some(1_700_000_000_000_000));
     }
@@ -172,10 +197,17 @@ mod tests {
             Tag {
                 source: Some(b"GP0001"),
                 unix_micros: Some(1_700_000_000_000_000),
+                ..Tag::default()
             },
             Tag {
-                source: None,
                 unix_micros: Some(1_700_000_000_250_000),
+                ..Tag::default()
+            },
+            Tag {
+                source: Some(b"II0001"),
+                destination: Some(b"EI0002"),
+                unix_micros: None,
+                line_count: Some(999),
             },
         ] {
             let mut line = Vec::new();

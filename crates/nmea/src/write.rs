@@ -1,5 +1,6 @@
 //! Writes one sentence, with checksum and line end.
 
+use crate::alert;
 use crate::checksum;
 use crate::print;
 use crate::sentence::{Data, Gga, Gll, Rmc, Sentence, Vtg, Xdr};
@@ -88,6 +89,12 @@ fn fields(data: &Data, out: &mut Vec<u8>) {
             print::number(out, hbt.interval_s);
             print::text(out, if hbt.normal { b"A" } else { b"V" });
             print::integer(out, hbt.sequence.map(u32::from), 1);
+        }
+        Data::Acn(acn) => {
+            print::time(out, acn.time);
+            alert::identity(acn.alert, out);
+            print::text(out, &[acn.command.letter()]);
+            print::text(out, b"C");
         }
     }
 }

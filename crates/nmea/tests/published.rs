@@ -1,9 +1,12 @@
 //! Sentences as printed in manuals and handbooks, and the meaning of each
 //! letter.
 
-use binnacle_nmea::sentence::{Gga, Hbt, Hdg, Mta, Position, Rot, Ths, ThsMode, Vhw, Vtg, Xdr};
+use binnacle_nmea::alert::{AlertCommand, AlertId};
+use binnacle_nmea::sentence::{
+    Acn, Gga, Hbt, Hdg, Mta, Position, Rot, Ths, ThsMode, Vhw, Vtg, Xdr,
+};
 use binnacle_nmea::time::{Date, TimeOfDay};
-use binnacle_nmea::{Data, Rejected, Sentence, parse};
+use binnacle_nmea::{Data, Kind, Rejected, Sentence, parse};
 
 /// Adds the checksum to the body between `$` and `*`.
 fn line(body: &str) -> Vec<u8> {
@@ -281,6 +284,45 @@ fn the_heartbeat_is_read() {
         sequence: Some(9),
     };
     assert_eq!(data("HEHBT,30,A,9"), Data::Hbt(expected));
+}
+
+#[test]
+fn a_command_to_an_alert_is_read_and_what_is_no_command_is_not() {
+    let expected = Acn {
+        time: TimeOfDay::new(8, 19, 50, 100_000),
+        alert: AlertId {
+            manufacturer: Some(*b"XYZ"),
+            number: 10_512,
+            instance: Some(1),
+        },
+        command: AlertCommand::Acknowledge,
+    };
+    assert_eq!(data("CAACN,081950.10,XYZ,10512,1,A,C"), Data::Acn(expected));
+    let of_the_standards = Acn {
+        time: None,
+        alert: AlertId {
+            manufacturer: None,
+            number: 192,
+            instance: None,
+        },
+        command: AlertCommand::Silence,
+    };
+    assert_eq!(data("CAACN,,,192,,S,C"), Data::Acn(of_the_standards));
+    for (body, field) in [
+        ("CAACN,,XYZ,10512,1,A,R", "status flag"),
+        ("CAACN,,XYZ,10512,1,A", "status flag"),
+        ("CAACN,,XYZ,10512,1,B,C", "command"),
+        ("CAACN,,XYZ,,1,A,C", "alert identifier"),
+        ("CAACN,,XY,10512,1,A,C", "manufacturer"),
+        ("CAACN,,XYZ,10512,x,A,C", "instance"),
+    ] {
+        let kind = Kind::Acn;
+        assert_eq!(
+            parse(&line(body)),
+            Err(Rejected::BadField { kind, field }),
+            "{body}"
+        );
+    }
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Printed sentences are read back unchanged, and no bytes cause a panic.
 
+use binnacle_nmea::alert::{AlertCommand, AlertId};
 use binnacle_nmea::sentence::{
-    Gga, Gll, Hbt, Hdg, Hdm, Hdt, Mta, Position, Rmc, Rot, Ths, ThsMode, Vhw, Vtg, Xdr, Zda,
+    Acn, Gga, Gll, Hbt, Hdg, Hdm, Hdt, Mta, Position, Rmc, Rot, Ths, ThsMode, Vhw, Vtg, Xdr, Zda,
 };
 use binnacle_nmea::tag::parse_tagged;
 use binnacle_nmea::time::{Date, TimeOfDay};
@@ -42,6 +43,10 @@ fn time() -> impl Strategy<Value = Option<TimeOfDay>> {
 
 fn date(years: std::ops::RangeInclusive<u16>) -> impl Strategy<Value = Option<Date>> {
     of((years, 1..=12_u8, 1..=31_u8).prop_filter_map("not a day", |(y, m, d)| Date::new(y, m, d)))
+}
+
+fn command() -> impl Strategy<Value = AlertCommand> {
+    prop::sample::select(b"AQOS".to_vec()).prop_filter_map("no command", AlertCommand::from_letter)
 }
 
 fn data() -> impl Strategy<Value = Data> {
@@ -138,6 +143,25 @@ fn data() -> impl Strategy<Value = Data> {
                 sequence,
             })
         }),
+        (
+            time(),
+            of("[A-Z0-9]{3}"),
+            0..10_000_000_u32,
+            of(0..1_000_000_u32),
+            command()
+        )
+            .prop_map(|(time, manufacturer, number, instance, command)| {
+                let letters = |text: String| text.into_bytes().try_into().expect("three letters");
+                Data::Acn(Acn {
+                    time,
+                    alert: AlertId {
+                        manufacturer: manufacturer.map(letters),
+                        number,
+                        instance,
+                    },
+                    command,
+                })
+            }),
     ]
 }
 

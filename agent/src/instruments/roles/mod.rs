@@ -263,7 +263,7 @@ impl Roles {
                 let used = self.temperature.note_reading(seen, moment).source();
                 single(used.map(|_| Signal::Temperature(celsius)))
             }
-            Reading::Pitch { .. } | Reading::Greeting(_) => single(None),
+            Reading::Pitch { .. } | Reading::Greeting(_) | Reading::AlertCommand(_) => single(None),
         }
     }
 
