@@ -1,6 +1,6 @@
 //! `[inputs.NAME]`: one input, of exactly one kind.
 
-use super::output::SerialConfig;
+use super::destination::SerialConfig;
 use serde::Deserialize;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::path::{Path, PathBuf};
@@ -151,6 +151,13 @@ impl TryFrom<GroupText> for Group {
             GroupText::Short(address) => (address, Ipv4Addr::UNSPECIFIED),
             GroupText::Long(long) => (long.group, long.interface),
         };
+        Group::new(address, interface)
+    }
+}
+
+impl Group {
+    /// Creates a group, or names an address that is none.
+    pub(super) fn new(address: SocketAddrV4, interface: Ipv4Addr) -> Result<Group, String> {
         if !address.ip().is_multicast() {
             return Err(format!("{address} is not a multicast address"));
         }

@@ -4,9 +4,11 @@
 //! that loads can run. Paths in the file are relative to the file.
 
 mod alert;
+mod destination;
 mod error;
 mod input;
 mod limits;
+mod line_load;
 mod output;
 mod profile;
 mod roles;
@@ -16,9 +18,13 @@ mod uplink;
 pub(crate) use alert::AlertConfig;
 #[cfg(test)]
 pub(crate) use alert::GyroError;
+pub(crate) use destination::{
+    AddressConfig, MulticastConfig, Selection, SerialConfig, SerialOutputConfig, Sfi,
+};
 pub(crate) use error::ConfigError;
 pub(crate) use input::{Group, HostPort, InputConfig, SignalKUrl};
-pub(crate) use output::{OutputConfig, SentenceConfig, SerialConfig};
+pub(crate) use line_load::SHORTEST_INTERVAL_SHARE;
+pub(crate) use output::{OutputConfig, SentenceConfig, SentenceKind};
 #[cfg(test)]
 pub(crate) use profile::max_burst_batch_bytes;
 pub(crate) use profile::{ConnectionPolicy, Profile, UploadPlan};
@@ -118,6 +124,7 @@ fn parse(text: &str) -> Result<Config, Problem> {
         }
     }
     config.uplink.check(config.modem.as_ref())?;
+    config.output.check()?;
     Ok(config)
 }
 
@@ -180,6 +187,7 @@ stale_s = 15
         assert_eq!(example.silence.steering_s, bare.silence.steering_s);
         assert_eq!(example.output.interval_s, bare.output.interval_s);
         assert_eq!(example.output.alarm_sentence, bare.output.alarm_sentence);
+        assert_eq!(example.output.alert_sentences, bare.output.alert_sentences);
         assert_eq!(example.output.talker, bare.output.talker);
         assert_eq!(example.output.hdg, bare.output.hdg);
         assert_eq!(example.output.ths, bare.output.ths);

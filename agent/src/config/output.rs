@@ -1,9 +1,12 @@
 //! `[output]`: destinations of the corrected heading, and its sentences.
 
+use super::destination::{
+    AddressConfig, MulticastConfig, Selection, SerialOutputConfig, one_or_more,
+};
+use super::error::Problem;
 use super::limits::PositiveSeconds;
 use super::roles::two_capitals;
 use serde::{Deserialize, Deserializer};
-use std::net::SocketAddr;
 
 /// Destinations of the corrected heading.
 #[derive(Clone, Debug, Deserialize)]
@@ -11,13 +14,16 @@ use std::net::SocketAddr;
 pub(crate) struct OutputConfig {
     /// Addresses of TCP servers that send to every client.
     #[serde(deserialize_with = "one_or_more")]
-    pub(crate) tcp_server: Vec<SocketAddr>,
+    pub(crate) tcp_server: Vec<AddressConfig>,
     /// Destinations of datagrams; may be broadcast addresses.
     #[serde(deserialize_with = "one_or_more")]
-    pub(crate) udp: Vec<SocketAddr>,
+    pub(crate) udp: Vec<AddressConfig>,
+    /// Groups of IEC 61162-450 to send to.
+    #[serde(deserialize_with = "one_or_more")]
+    pub(crate) multicast: Vec<MulticastConfig>,
     /// Serial ports to write to.
     #[serde(deserialize_with = "one_or_more")]
-    pub(crate) serial: Vec<SerialConfig>,
+    pub(crate) serial: Vec<SerialOutputConfig>,
     /// Seconds between two outputs.
     pub(crate) interval_s: PositiveSeconds,
     /// Talker of all sentences.
@@ -31,6 +37,8 @@ pub(crate) struct OutputConfig {
     pub(crate) hdt: SentenceConfig,
     /// Sends ALR sentences of the agent's own alert as well.
     pub(crate) alarm_sentence: bool,
+    /// Sends ALF, ALC, ARC and HBT of the agent's alerts, and takes ACN commands to them.
+    pub(crate) alert_sentences: bool,
 }
 
 impl Default for OutputConfig {
@@ -38,6 +46,7 @@ impl Default for OutputConfig {
         OutputConfig {
             tcp_server: Vec::new(),
             udp: Vec::new(),
+            multicast: Vec::new(),
             serial: Vec::new(),
             interval_s: PositiveSeconds(1.0),
             talker: *b"II",
@@ -45,6 +54,7 @@ impl Default for OutputConfig {
             ths: SentenceConfig::ON,
             hdt: SentenceConfig::OFF,
             alarm_sentence: false,
+            alert_sentences: false,
         }
     }
 }
@@ -60,6 +70,83 @@ impl OutputConfig {
         let sent = own.into_iter().filter(|(config, _)| config.is_on);
         sent.map(|(config, sentence)| (config.talker.unwrap_or(self.talker), sentence))
             .collect()
+    }
+
+    /// Returns the seconds between two sentences of a kind.
+    pub(crate) fn interval_s(&self, sentence: SentenceConfig) -> f64 {
+        sentence.interval_s.unwrap_or(self.interval_s).0
+    }
+
+    /// Returns whether a sentence is sent at all.
+    pub(super) fn is_sent(&self, kind: SentenceKind) -> bool {
+        match kind {
+            SentenceKind::Hdg => self.hdg.is_on,
+            SentenceKind::Ths => self.ths.is_on,
+            SentenceKind::Hdt => self.hdt.is_on,
+            SentenceKind::Pbinq => true,
+            SentenceKind::Alr => self.alarm_sentence,
+            SentenceKind::Alf => self.alert_sentences,
+        }
+    }
+
+    /// Refuses destinations that select a sentence which is never sent, and serial lines that
+    /// cannot carry their sentences.
+    pub(super) fn check(&self) -> Result<(), Problem> {
+        for selected in self.selections().flat_map(Selection::named) {
+            let kind = *selected.get_ref();
+            if !self.is_sent(kind) {
+                return Err(Problem {
+                    span: Some(selected.span()),
+                    problem: format!("{} is not switched on in [output]", kind.name()),
+                });
+            }
+        }
+        self.check_lines()
+    }
+
+    fn selections(&self) -> impl Iterator<Item = &Selection> {
+        let addresses = self.tcp_server.iter().chain(&self.udp);
+        let addresses = addresses.map(|destination| &destination.sentences);
+        let groups = self.multicast.iter().map(|group| &group.sentences);
+        let lines = self.serial.iter().map(|line| &line.sentences);
+        addresses.chain(groups).chain(lines)
+    }
+}
+
+/// Sentences that a destination can select.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub(crate) enum SentenceKind {
+    Hdg,
+    Ths,
+    Hdt,
+    /// Quality of the heading.
+    Pbinq,
+    /// Alarm for an alarm panel.
+    Alr,
+    /// Alerts for bridge alert management: ALF, ALC, ARC and HBT.
+    Alf,
+}
+
+impl SentenceKind {
+    pub(super) const ALL: [SentenceKind; 6] = [
+        SentenceKind::Hdg,
+        SentenceKind::Ths,
+        SentenceKind::Hdt,
+        SentenceKind::Pbinq,
+        SentenceKind::Alr,
+        SentenceKind::Alf,
+    ];
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            SentenceKind::Hdg => "HDG",
+            SentenceKind::Ths => "THS",
+            SentenceKind::Hdt => "HDT",
+            SentenceKind::Pbinq => "PBINQ",
+            SentenceKind::Alr => "ALR",
+            SentenceKind::Alf => "ALF",
+        }
     }
 }
 
@@ -78,7 +165,7 @@ impl SentenceConfig {
         talker: None,
         interval_s: None,
     };
-    const ON: SentenceConfig = SentenceConfig {
+    pub(crate) const ON: SentenceConfig = SentenceConfig {
         is_on: true,
         ..SentenceConfig::OFF
     };
@@ -122,38 +209,6 @@ fn some_two_capitals<'de, D: Deserializer<'de>>(d: D) -> Result<Option<[u8; 2]>,
     two_capitals(d).map(Some)
 }
 
-/// Serial port to write to.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct SerialConfig {
-    /// Device, as `/dev/ttyUSB0`.
-    pub(crate) path: String,
-    /// Bits per second; IEC 61162-1 has 4800, 61162-2 38400.
-    #[serde(default = "standard_baud")]
-    pub(crate) baud: u32,
-}
-
-fn standard_baud() -> u32 {
-    4800
-}
-
-/// Reads one value, or a list of them.
-fn one_or_more<'de, D, T>(deserializer: D) -> Result<Vec<T>, D::Error>
-where
-    D: Deserializer<'de>,
-    T: serde::de::DeserializeOwned,
-{
-    let value = toml::Value::deserialize(deserializer)?;
-    let values = match value {
-        toml::Value::Array(values) => values,
-        one => vec![one],
-    };
-    let read = values.into_iter().map(|value| {
-        T::deserialize(value).map_err(|error| serde::de::Error::custom(error.message()))
-    });
-    read.collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -165,7 +220,7 @@ mod tests {
     #[test]
     fn a_destination_is_one_or_several() {
         let one = read("udp = \"10.0.0.255:10110\"\nserial = { path = \"/dev/a\" }").unwrap();
-        assert_eq!((one.udp.len(), one.serial[0].baud), (1, 4800));
+        assert_eq!((one.udp.len(), one.serial[0].baud()), (1, 4800));
         let more = read("udp = [\"10.0.0.1:1\", \"10.0.0.2:2\"]\ntcp_server = []").unwrap();
         assert_eq!((more.udp.len(), more.tcp_server.len()), (2, 0));
         assert!(
@@ -178,6 +233,59 @@ mod tests {
                 .unwrap_err()
                 .contains("bauds")
         );
+    }
+
+    #[test]
+    fn a_destination_may_select_its_sentences() {
+        let text = r#"
+udp = ["10.0.0.1:1", { address = "10.0.0.2:2", sentences = ["HDG", "ALR"] }]
+tcp_server = { address = "127.0.0.1:0", sentences = ["PBINQ"] }
+"#;
+        let output = read(text).unwrap();
+        let hdg = |sentences: &Selection| sentences.includes(SentenceKind::Hdg);
+        assert!(hdg(&output.udp[0].sentences) && hdg(&output.udp[1].sentences));
+        assert!(!output.udp[1].sentences.includes(SentenceKind::Ths));
+        assert!(!hdg(&output.tcp_server[0].sentences));
+        let unsent = output.check().err().unwrap();
+        assert_eq!(unsent.problem, "ALR is not switched on in [output]");
+        assert_eq!(&text[unsent.span.unwrap()], "\"ALR\"");
+        let none = read("udp = { address = \"10.0.0.2:2\", sentences = [] }");
+        assert!(none.unwrap_err().contains("sends nothing"));
+        let unknown = read("udp = { address = \"10.0.0.2:2\", sentences = [\"HDM\"] }");
+        assert!(unknown.unwrap_err().contains("HDM"));
+    }
+
+    #[test]
+    fn a_multicast_group_has_a_source_and_perhaps_a_destination() {
+        let short = read("multicast = \"239.192.0.4:60004\"").unwrap();
+        let group = &short.multicast[0];
+        assert_eq!(group.group.address.port(), 60004);
+        assert!(group.sfi.is_none() && group.destination.is_none());
+        let long = "multicast = { group = \"239.192.0.4:60004\", interface = \"10.0.0.1\", \
+                    sfi = \"HC0012\", destination = \"EI0001\" }";
+        let long = read(long).unwrap();
+        let group = &long.multicast[0];
+        assert_eq!(group.group.interface.octets(), [10, 0, 0, 1]);
+        assert_eq!(group.sfi.unwrap().bytes(), b"HC0012");
+        assert_eq!(group.destination.unwrap().bytes(), b"EI0001");
+        for (wrong, named) in [
+            (
+                "\"192.168.1.1:60004\"",
+                "192.168.1.1:60004 is not a multicast",
+            ),
+            (
+                "{ group = \"239.192.0.4:60004\", sfi = \"HC1\" }",
+                "\"HC1\"",
+            ),
+            (
+                "{ group = \"239.192.0.4:60004\", sfi = \"hc0001\" }",
+                "\"hc0001\"",
+            ),
+            ("5", "one destination"),
+        ] {
+            let message = read(&format!("multicast = {wrong}")).unwrap_err();
+            assert!(message.contains(named), "{wrong}: {message}");
+        }
     }
 
     #[test]

@@ -1,11 +1,18 @@
-//! Output to the bridge: the corrected heading and the alarm as NMEA 0183 sentences, over
-//! TCP, UDP and serial ports.
+//! Output to the bridge: the corrected heading and the alerts as NMEA 0183 sentences, over TCP, UDP,
+//! IEC 61162-450 and serial ports.
 
 mod alarm_sentence;
 mod framing;
 mod heading_sentences;
+mod line;
+
+mod bridge_commands;
+mod datagrams;
 mod outputs;
+mod serial_line;
+mod tcp_clients;
 
 pub(crate) use alarm_sentence::AlarmSentence;
-pub(crate) use heading_sentences::{HeadingSentences, Quality};
+pub(crate) use heading_sentences::{HeadingSentences, Quality, Trigger};
+pub(crate) use line::Line;
 pub(crate) use outputs::Outputs;

@@ -1,10 +1,11 @@
 //! The corrected heading, from the latest readings to the outputs.
 
-use super::Agent;
+use super::{Agent, CHANNEL_CAPACITY};
 use crate::alert::AlertRecord;
+use crate::config::SentenceKind;
 use crate::corrected_heading::{self, CardRow, CorrectedHeading, CorrectionInputs};
 use crate::instruments::{Latest, SentHeading};
-use crate::output::Quality;
+use crate::output::{Line, Quality, Trigger};
 use crate::status::ModelStatus;
 use crate::{card_invalidation, clock};
 use binnacle_wire::messages::CardWithdrawn;
@@ -21,7 +22,17 @@ impl Agent {
         })
     }
 
+    /// Corrects the latest reading, and makes the card.
     pub(super) fn correct(&mut self) -> (CorrectedHeading, Vec<CardRow>) {
+        self.with_correction_inputs(|inputs| {
+            (
+                corrected_heading::correct(inputs),
+                corrected_heading::card(inputs),
+            )
+        })
+    }
+
+    fn with_correction_inputs<R>(&mut self, with: impl FnOnce(CorrectionInputs<'_>) -> R) -> R {
         let place = self.acquisition.place(Instant::now());
         let withdrawn = self.card_withdrawal();
         let model = self.uplink_handle.model.borrow();
@@ -32,7 +43,7 @@ impl Agent {
             .silence
             .position_steering()
             .is_some_and(|age| Latest::within(readings.position, age, now).is_none());
-        let inputs = CorrectionInputs {
+        with(CorrectionInputs {
             compass: Latest::within(readings.compass, compass_age, now),
             compass_is_mixed: readings.compass_is_mixed,
             place: place.filter(|_| !is_silent),
@@ -44,31 +55,52 @@ impl Agent {
                 .record()
                 .is_some_and(AlertRecord::suspects_compass),
             withheld: self.withheld,
-        };
-        (
-            corrected_heading::correct(inputs),
-            corrected_heading::card(inputs),
-        )
+        })
     }
 
-    pub(super) fn send_heading(&mut self) {
-        let (corrected, _) = self.correct();
+    /// Returns the time at which a heading is sent unless a reading causes it before.
+    pub(super) fn next_output(&self) -> Instant {
+        let interval = self.acquisition.readings.compass_interval();
+        self.sentences.next_timer(interval, Instant::now())
+    }
+
+    /// Sends the heading without a new reading; those that wait are taken first.
+    pub(super) async fn run_output_timer(&mut self) {
+        for _ in 0..CHANNEL_CAPACITY {
+            let Ok(observations) = self.observations.try_recv() else {
+                break;
+            };
+            self.observe(&observations).await;
+        }
+        self.send_heading(Trigger::Timer);
+    }
+
+    /// Sends what is due.
+    pub(super) fn send_heading(&mut self, trigger: Trigger) {
+        let now = Instant::now();
+        let corrected = self.with_correction_inputs(corrected_heading::correct);
         self.withheld = corrected.is_withheld();
         self.acquisition.note_corrected(corrected.true_deg);
         let quality = self.model_status().map(|model| Quality {
             version: model.version,
             age_days: model.age_days.unwrap_or_default(),
         });
-        if let Some(sent) = sent_heading(&corrected) {
-            self.acquisition.note_sent(sent, Instant::now());
+        let interval = self.acquisition.readings.compass_interval();
+        let mut lines = self
+            .sentences
+            .due(&corrected, quality, trigger, interval, now);
+        if let Some(sent) = sent_heading(&corrected).filter(|_| !lines.is_empty()) {
+            self.acquisition.note_sent(sent, now);
         }
-        let mut sentences = self.sentences.due(&corrected, quality, Instant::now());
         if let Some(alarm) = &mut self.alarm {
-            let due = alarm.due(self.alert_monitor.record(), Instant::now());
-            sentences.extend(due.into_iter().flatten());
+            let due = alarm.due(self.alert_monitor.record(), now);
+            lines.extend(due.map(|text| Line {
+                kind: SentenceKind::Alr,
+                text,
+            }));
         }
-        if !sentences.is_empty() {
-            self.outputs.send(sentences);
+        if !lines.is_empty() {
+            self.outputs.send(&lines);
         }
     }
 

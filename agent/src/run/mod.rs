@@ -16,7 +16,7 @@ use crate::alert::{AlertMonitor, AlertRecord};
 use crate::config::{Config, SilenceConfig, UploadPlan};
 use crate::input::InputStats;
 use crate::instruments::Observation;
-use crate::output::{AlarmSentence, HeadingSentences, Outputs};
+use crate::output::{AlarmSentence, HeadingSentences, Outputs, Trigger};
 use crate::raw_log::{RawLog, Second};
 use crate::sampler::{Exclusion, Tally};
 use crate::spool::{Pending, Seal, Spool, StoredReport};
@@ -24,11 +24,12 @@ use crate::status::Status;
 use crate::uplink::UplinkHandle;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
+use binnacle_nmea::sentence::Acn;
 use binnacle_wire::alert::ShipAlert;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
-use tokio::time::{Instant, MissedTickBehavior, interval};
+use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
@@ -63,6 +64,8 @@ struct Agent {
     observations: mpsc::Receiver<Vec<Observation>>,
     inputs: Vec<(String, Arc<InputStats>)>,
     outputs: Outputs,
+    /// Commands that the outputs' receivers send.
+    alert_commands: mpsc::Receiver<Acn>,
     sentences: HeadingSentences,
     exclusion: watch::Sender<Option<Exclusion>>,
     alert_monitor: AlertMonitor,
@@ -98,17 +101,15 @@ struct Unstored {
 impl Agent {
     async fn run(mut self, shutdown: CancellationToken) {
         let mut second = interval(TICK);
-        let mut output = interval(self.sentences.tick());
-        for ticks in [&mut second, &mut output] {
-            ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
-        }
+        second.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut exclusion = self.exclusion.subscribe();
         loop {
+            let output = self.next_output();
             tokio::select! {
                 () = shutdown.cancelled() => break,
                 Some(observations) = self.observations.recv() => self.observe(&observations).await,
                 _ = second.tick() => self.run_every_second().await,
-                _ = output.tick() => self.send_heading(),
+                () = sleep_until(output) => self.run_output_timer().await,
                 Ok(()) = self.uplink_handle.settings.changed() => {
                     let settings = self.uplink_handle.settings.borrow_and_update().clone();
                     self.acquisition.sampler.set_settings(settings);
@@ -151,6 +152,7 @@ impl Agent {
 
     async fn observe(&mut self, observations: &[Observation]) {
         let heard = Instant::now();
+        let compass = self.acquisition.readings.compass;
         for observation in observations {
             self.acquisition.observe(observation, heard);
             if let Some(time) = self.acquisition.time() {
@@ -161,6 +163,9 @@ impl Agent {
             }
         }
         self.update_alert();
+        if self.acquisition.readings.compass != compass {
+            self.send_heading(Trigger::Reading);
+        }
         if !self.acquisition.sampler.has_samples() {
             return;
         }

@@ -51,7 +51,8 @@ impl Agent {
             ..Unstored::default()
         };
 
-        let outputs = Outputs::open(&config.output, shutdown).await?;
+        let (alert_command_tx, alert_commands) = mpsc::channel(CHANNEL_CAPACITY);
+        let outputs = Outputs::open(&config.output, &alert_command_tx, shutdown).await?;
         let exclusion = watch::Sender::new(exclusion);
         let status = watch::Sender::new(Arc::new(Status::default()));
         let acknowledged = watch::Sender::new(None);
@@ -94,6 +95,7 @@ impl Agent {
             observations,
             inputs,
             outputs,
+            alert_commands,
             sentences: HeadingSentences::new(&config.output),
             exclusion,
             alert_monitor: AlertMonitor::new(config.alert, stored_alert, judged_by),

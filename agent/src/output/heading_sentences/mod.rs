@@ -1,0 +1,240 @@
+//! The corrected heading as sentences for autopilots and repeaters.
+//!
+//! `HDG` carries the raw reading with deviation and variation filled in, `THS` the true heading in
+//! mode E, `HDT` the true heading without a mode, and `$PBINQ` their quality: `$PBINQ,status,model
+//! version,age in days,standard error in degrees*hh`.
+//!
+//! A sentence is sent when a reading of the compass arrives, from that reading, if its interval has
+//! nearly passed. A timer sends it where no reading comes in time: the compass is slower than the
+//! output, or silent.
+//!
+//! While the corrected heading is withheld, nothing can be read as a heading: THS has mode V, HDG
+//! has no reading, and HDT is not sent.
+//!
+//! The usual talker is `II`, not `HC`: an agent that receives its own output must not take it for
+//! the compass.
+
+use crate::config::{OutputConfig, SHORTEST_INTERVAL_SHARE, SentenceConfig, SentenceKind};
+use crate::corrected_heading::CorrectedHeading;
+use crate::output::framing::frame_sentence;
+use crate::output::line::Line;
+use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation};
+use binnacle_nmea::sentence::{Hdg, Hdt, Ths, ThsMode};
+use binnacle_nmea::{Data, Sentence, write};
+use std::time::Duration;
+use tokio::time::Instant;
+
+/// Longest time until receivers hear that a heading is withheld.
+const LONGEST_PAUSE: Duration = Duration::from_millis(500);
+/// Share of the interval by which a reading may come early and the timer waits for a late one.
+const SLACK_SHARE: f64 = 0.4;
+/// Upper bound of that time.
+const MAX_SLACK: Duration = Duration::from_millis(250);
+/// Intervals of a sentence up to which the compass's own interval sets its time.
+const FOLLOWED_INTERVALS: f64 = 1.25;
+
+/// Quality of the model behind a heading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Quality {
+    /// Version of the model.
+    pub(crate) version: u32,
+    /// Days since its last sample.
+    pub(crate) age_days: f64,
+}
+
+/// Cause for which a heading may be sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Trigger {
+    /// A new reading of the compass.
+    Reading,
+    /// The timer of [`HeadingSentences::next_timer`].
+    Timer,
+}
+
+/// Sentences that are sent, each at its own interval.
+#[derive(Debug)]
+pub(crate) struct HeadingSentences {
+    schedules: Vec<Schedule>,
+    was_withheld: bool,
+}
+
+/// Talker and interval of a sentence.
+#[derive(Clone, Copy, Debug)]
+struct Schedule {
+    kind: SentenceKind,
+    talker: [u8; 2],
+    interval: Duration,
+    due: Option<Instant>,
+}
+
+impl HeadingSentences {
+    /// Creates the configured sentences.
+    pub(crate) fn new(config: &OutputConfig) -> HeadingSentences {
+        let always = SentenceConfig::ON;
+        let own = [
+            (SentenceKind::Hdg, config.hdg),
+            (SentenceKind::Ths, config.ths),
+            (SentenceKind::Hdt, config.hdt),
+            (SentenceKind::Pbinq, always),
+        ];
+        let sent = own.into_iter().filter(|(_, own)| own.is_on);
+        let schedules = sent.map(|(kind, own)| Schedule {
+            kind,
+            talker: own.talker.unwrap_or(config.talker),
+            interval: Duration::from_secs_f64(config.interval_s(own)),
+            due: None,
+        });
+        HeadingSentences {
+            schedules: schedules.collect(),
+            was_withheld: false,
+        }
+    }
+
+    /// Returns the time of the next [`Trigger::Timer`], given the compass's own interval.
+    pub(crate) fn next_timer(&self, compass_interval: Duration, now: Instant) -> Instant {
+        let times = self.schedules.iter();
+        let times = times.map(|schedule| schedule.timer(compass_interval).unwrap_or(now));
+        times.fold(now + LONGEST_PAUSE, Instant::min)
+    }
+
+    /// Returns the sentences that are due. A heading that has just been withheld is not valid at
+    /// once, whatever the intervals.
+    pub(crate) fn due(
+        &mut self,
+        corrected: &CorrectedHeading,
+        quality: Option<Quality>,
+        trigger: Trigger,
+        compass_interval: Duration,
+        now: Instant,
+    ) -> Vec<Line> {
+        let is_withheld = corrected.true_deg.is_none();
+        let at_once = is_withheld && !self.was_withheld;
+        self.was_withheld = is_withheld;
+        let mut lines = Vec::new();
+        for schedule in &mut self.schedules {
+            if !at_once && !schedule.is_due(trigger, compass_interval, now) {
+                continue;
+            }
+            schedule.note_due(now);
+            let text = schedule.sentence(corrected, quality);
+            let kind = schedule.kind;
+            lines.extend(text.map(|text| Line { kind, text }));
+        }
+        lines
+    }
+}
+
+impl Schedule {
+    fn slack(&self) -> Duration {
+        self.interval.mul_f64(SLACK_SHARE).min(MAX_SLACK)
+    }
+
+    /// Returns the time at which the timer sends, after the first time.
+    fn timer(&self, compass_interval: Duration) -> Option<Instant> {
+        let due = self.due?;
+        let is_followed = !compass_interval.is_zero()
+            && compass_interval <= self.interval.mul_f64(FOLLOWED_INTERVALS);
+        Some(if is_followed {
+            due + self.slack()
+        } else {
+            due + self.interval.mul_f64(1.0 - SHORTEST_INTERVAL_SHARE)
+        })
+    }
+
+    fn is_due(&self, trigger: Trigger, compass_interval: Duration, now: Instant) -> bool {
+        match trigger {
+            Trigger::Reading => self.due.is_none_or(|due| now + self.slack() >= due),
+            Trigger::Timer => self
+                .timer(compass_interval)
+                .is_none_or(|timer| now >= timer),
+        }
+    }
+
+    /// Sets the next time. Readings that come early do not make the mean rate higher.
+    fn note_due(&mut self, now: Instant) {
+        let from = self.due.map_or(now, |due| due.max(now));
+        // At once is out of turn: the next time must not move away with each.
+        let from = from.min(now + self.slack());
+        self.due = Some(from + self.interval.mul_f64(SHORTEST_INTERVAL_SHARE));
+    }
+
+    /// Returns the sentence with its line end; none for an HDT that is withheld.
+    fn sentence(&self, corrected: &CorrectedHeading, quality: Option<Quality>) -> Option<Vec<u8>> {
+        let data = match self.kind {
+            SentenceKind::Hdg => hdg(corrected),
+            SentenceKind::Ths => ths(corrected),
+            SentenceKind::Hdt => hdt(corrected)?,
+            _ => return Some(quality_sentence(corrected, quality)),
+        };
+        let mut text = Vec::with_capacity(40);
+        let talker = self.talker;
+        write(&Sentence { talker, data }, &mut text);
+        Some(text)
+    }
+}
+
+fn hdg(corrected: &CorrectedHeading) -> Data {
+    let is_withheld = corrected.true_deg.is_none();
+    Data::Hdg(Hdg {
+        // Without a deviation, a receiver would take the raw reading for the magnetic heading.
+        reading_deg: corrected
+            .compass_deg
+            .filter(|_| !is_withheld)
+            .map(CompassHeading::degrees)
+            .map(tenth),
+        deviation_deg_east: corrected
+            .deviation_deg
+            .filter(|_| !is_withheld)
+            .map(Deviation::degrees_east)
+            .map(tenth),
+        variation_deg_east: corrected
+            .variation_deg
+            .map(Variation::degrees_east)
+            .map(tenth),
+    })
+}
+
+fn ths(corrected: &CorrectedHeading) -> Data {
+    Data::Ths(Ths {
+        heading_deg_true: corrected.true_deg.map(TrueHeading::degrees).map(tenth),
+        mode: if corrected.true_deg.is_some() {
+            ThsMode::Estimated
+        } else {
+            ThsMode::NotValid
+        },
+    })
+}
+
+/// Returns HDT; none while the heading is withheld, for it cannot say so.
+fn hdt(corrected: &CorrectedHeading) -> Option<Data> {
+    let heading_deg_true = Some(tenth(corrected.true_deg?.degrees()));
+    Some(Data::Hdt(Hdt { heading_deg_true }))
+}
+
+fn quality_sentence(corrected: &CorrectedHeading, quality: Option<Quality>) -> Vec<u8> {
+    let status = if corrected.true_deg.is_some() {
+        'A'
+    } else {
+        'V'
+    };
+    let (version, age) = match quality {
+        Some(quality) => (
+            quality.version.to_string(),
+            format!("{:.1}", quality.age_days),
+        ),
+        None => (String::new(), String::new()),
+    };
+    let error = corrected
+        .standard_error_deg
+        .map(|error| format!("{error:.2}"))
+        .unwrap_or_default();
+    frame_sentence(&format!("PBINQ,{status},{version},{age},{error}"))
+}
+
+/// Rounds to a tenth: sensors give no more, and further digits would only look better.
+fn tenth(degrees: f64) -> f64 {
+    (degrees * 10.0).round() / 10.0
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,35 @@
+//! Sentences to be sent, with their kind: a destination may take some of them only.
+
+use crate::config::{Selection, SentenceKind};
+
+/// A sentence with its line end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Line {
+    pub(crate) kind: SentenceKind,
+    pub(crate) text: Vec<u8>,
+}
+
+impl Line {
+    /// Splits sentences of one kind.
+    pub(crate) fn split(kind: SentenceKind, sentences: &[u8]) -> impl Iterator<Item = Line> {
+        sentences
+            .split_inclusive(|byte| *byte == b'\n')
+            .map(move |text| Line {
+                kind,
+                text: text.to_vec(),
+            })
+    }
+
+    /// Returns whether a newer line of the same kind replaces this one.
+    pub(super) fn is_heading(&self) -> bool {
+        !matches!(self.kind, SentenceKind::Alr | SentenceKind::Alf)
+    }
+}
+
+/// Returns the lines that a destination takes.
+pub(super) fn select<'a>(
+    lines: &'a [Line],
+    selection: &'a Selection,
+) -> impl Iterator<Item = &'a Line> {
+    lines.iter().filter(|line| selection.includes(line.kind))
+}
