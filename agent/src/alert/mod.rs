@@ -1,6 +1,7 @@
-//! Alert of the agent itself: the corrected compass and its references disagree. It needs no link.
+//! Alerts of the agent itself: the corrected compass and its references disagree, and a plain
+//! difference of headings. They need no link.
 //!
-//! Invariants:
+//! Invariants of the first, which the server gets as well:
 //!
 //! - Only settled windows are judged: none in turns, none before the compass has come to rest after
 //!   one, none under an exclusion, none without a valid card. Delays are counted in settled
@@ -9,8 +10,14 @@
 //! - A revision is in the spool before it is published, together with the batch that carries it to
 //!   the server.
 
+mod condition;
+mod heading_difference;
 mod monitor;
 mod record;
 
+pub(crate) use condition::AlertCondition;
+pub(crate) use heading_difference::{
+    Comparison, DifferenceMonitor, DifferenceReference, HeadingDifference, HeadingDifferenceStatus,
+};
 pub(crate) use monitor::{ActiveCard, AlertMonitor};
 pub(crate) use record::{AlertRecord, AlertStatus};

@@ -194,6 +194,8 @@ stale_s = 15
         assert_eq!(example.output.hdt, bare.output.hdt);
         assert_eq!(example.alert.gyro_error_deg, bare.alert.gyro_error_deg);
         assert_eq!(example.alert.settled_s, bare.alert.settled_s);
+        assert_eq!(example.alert.difference_deg, bare.alert.difference_deg);
+        assert_eq!(example.alert.difference_s, bare.alert.difference_s);
     }
 
     #[test]

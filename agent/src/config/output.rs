@@ -265,7 +265,7 @@ tcp_server = { address = "127.0.0.1:0", sentences = ["PBINQ"] }
                     sfi = \"HC0012\", destination = \"EI0001\" }";
         let long = read(long).unwrap();
         let group = &long.multicast[0];
-        assert_eq!(group.group.interface.octets(), [10, 0, 0, 1]);
+        assert_eq!(group.group.interface.to_string(), "10.0.0.1");
         assert_eq!(group.sfi.unwrap().bytes(), b"HC0012");
         assert_eq!(group.destination.unwrap().bytes(), b"EI0001");
         for (wrong, named) in [

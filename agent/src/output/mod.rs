@@ -2,9 +2,11 @@
 //! IEC 61162-450 and serial ports.
 
 mod alarm_sentence;
+mod alert_sentences;
 mod framing;
 mod heading_sentences;
 mod line;
+mod managed_alert;
 
 mod bridge_commands;
 mod datagrams;
@@ -13,6 +15,7 @@ mod serial_line;
 mod tcp_clients;
 
 pub(crate) use alarm_sentence::AlarmSentence;
+pub(crate) use alert_sentences::{AlertConditions, AlertSentences};
 pub(crate) use heading_sentences::{HeadingSentences, Quality, Trigger};
 pub(crate) use line::Line;
 pub(crate) use outputs::Outputs;

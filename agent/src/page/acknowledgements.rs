@@ -1,4 +1,4 @@
-//! Acknowledgement of the open alert.
+//! Acknowledgement of an open alert.
 
 use super::request_guard::require_guard_header;
 use super::state::PageState;
@@ -26,6 +26,11 @@ pub(super) async fn acknowledge(
 ) -> Response {
     if let Err(refusal) = require_guard_header(&headers) {
         return refusal.into_response();
+    }
+    let difference = page.status.borrow().heading_difference.clone();
+    if difference.is_some_and(|difference| difference.alarm.id == seen.id) {
+        page.acknowledged.send_replace(Some(seen.id));
+        return Json(seen).into_response();
     }
     match save_acknowledgement(&page.spool, seen.id).await {
         Ok(true) => {

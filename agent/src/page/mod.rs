@@ -245,4 +245,28 @@ pub(crate) mod tests {
         assert!(page.spool.alert().await.unwrap().unwrap().acknowledged);
         assert_eq!(*page.acknowledged.borrow(), Some(id));
     }
+
+    #[tokio::test]
+    async fn a_heading_difference_is_acknowledged_too() {
+        let (_directory, mut page, _) = page().await;
+        let id = Uuid::from_u128(0xd1);
+        let difference = serde_json::json!({
+            "id": id, "is_open": true, "acknowledged": false, "reference": "gyro",
+            "difference_deg": 12.0, "limit_deg": 10.0, "says": "they differ", "advice": "",
+        });
+        let status = Status {
+            heading_difference: serde_json::from_value(difference).unwrap(),
+            ..Status::default()
+        };
+        page.status = watch::channel(Arc::new(status)).1;
+        let request = Request::post("/api/alert/acknowledge")
+            .header("content-type", "application/json")
+            .header("host", "192.168.1.9:8090")
+            .header("x-binnacle-request", "1")
+            .body(Body::from(format!(r#"{{"id":"{id}"}}"#)))
+            .unwrap();
+        let response = router(page.clone()).oneshot(request).await.unwrap();
+        assert_eq!(response.status(), StatusCode::OK);
+        assert_eq!(*page.acknowledged.borrow(), Some(id));
+    }
 }

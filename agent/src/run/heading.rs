@@ -32,7 +32,10 @@ impl Agent {
         })
     }
 
-    fn with_correction_inputs<R>(&mut self, with: impl FnOnce(CorrectionInputs<'_>) -> R) -> R {
+    pub(super) fn with_correction_inputs<R>(
+        &mut self,
+        with: impl FnOnce(CorrectionInputs<'_>) -> R,
+    ) -> R {
         let place = self.acquisition.place(Instant::now());
         let withdrawn = self.card_withdrawal();
         let model = self.uplink_handle.model.borrow();
@@ -75,6 +78,16 @@ impl Agent {
         self.send_heading(Trigger::Timer);
     }
 
+    /// Sends the heading of a new reading, unless a newer one may be waiting.
+    pub(super) fn send_new_reading(&mut self) {
+        let reading = self.acquisition.readings.compass;
+        if reading == self.offered_reading || !self.observations.is_empty() {
+            return;
+        }
+        self.offered_reading = reading;
+        self.send_heading(Trigger::Reading);
+    }
+
     /// Sends what is due.
     pub(super) fn send_heading(&mut self, trigger: Trigger) {
         let now = Instant::now();
@@ -94,10 +107,12 @@ impl Agent {
         }
         if let Some(alarm) = &mut self.alarm {
             let due = alarm.due(self.alert_monitor.record(), now);
-            lines.extend(due.map(|text| Line {
-                kind: SentenceKind::Alr,
-                text,
-            }));
+            let due = due.unwrap_or_default();
+            lines.extend(Line::split(SentenceKind::Alr, &due));
+        }
+        self.update_alert_sentences(now);
+        if let Some(alerts) = &mut self.alert_sentences {
+            lines.extend(alerts.due(now));
         }
         if !lines.is_empty() {
             self.outputs.send(&lines);

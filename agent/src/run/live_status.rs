@@ -1,7 +1,7 @@
 //! The live status, for the page and `status`.
 
 use super::Agent;
-use crate::alert::AlertRecord;
+use crate::alert::{AlertRecord, HeadingDifference};
 use crate::instruments::Latest;
 use crate::status::{InputReport, Status, offline_status};
 use tokio::time::Instant;
@@ -19,6 +19,8 @@ impl Agent {
         status.heading = heading;
         status.card = card;
         status.alert = self.alert_monitor.record().map(AlertRecord::status);
+        let difference = self.difference_monitor.last();
+        status.heading_difference = difference.map(HeadingDifference::status);
         status.position = Latest::within(readings.position, stale, now);
         status.gyro_deg = Latest::within(readings.gyro, stale, now);
         status.satellite_deg = Latest::within(readings.satellite, stale, now);

@@ -6,22 +6,24 @@
 //! lost.
 
 mod alert_watch;
+mod bridge_alerts;
 mod heading;
 mod live_status;
 mod start;
 mod store_samples;
 
 use crate::acquisition::Acquisition;
-use crate::alert::{AlertMonitor, AlertRecord};
+use crate::alert::{AlertMonitor, AlertRecord, DifferenceMonitor};
 use crate::config::{Config, SilenceConfig, UploadPlan};
 use crate::input::InputStats;
-use crate::instruments::Observation;
-use crate::output::{AlarmSentence, HeadingSentences, Outputs, Trigger};
+use crate::instruments::{Latest, Observation};
+use crate::output::{AlarmSentence, AlertSentences, HeadingSentences, Outputs};
 use crate::raw_log::{RawLog, Second};
 use crate::sampler::{Exclusion, Tally};
 use crate::spool::{Pending, Seal, Spool, StoredReport};
 use crate::status::Status;
 use crate::uplink::UplinkHandle;
+use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::sentence::Acn;
@@ -69,12 +71,16 @@ struct Agent {
     sentences: HeadingSentences,
     exclusion: watch::Sender<Option<Exclusion>>,
     alert_monitor: AlertMonitor,
+    difference_monitor: DifferenceMonitor,
     /// Alert as the spool has it.
     stored_alert: Option<AlertRecord>,
+    /// Reading of the compass that was last offered to the outputs.
+    offered_reading: Option<Latest<CompassHeading>>,
     /// Set if the last heading sent was withheld because its band was too wide.
     withheld: bool,
     acknowledged: watch::Receiver<Option<Uuid>>,
     alarm: Option<AlarmSentence>,
+    alert_sentences: Option<AlertSentences>,
     status: watch::Sender<Arc<Status>>,
     uplink: tokio::task::JoinHandle<()>,
     unstored: Unstored,
@@ -121,6 +127,7 @@ impl Agent {
                     }
                     self.last_contact = contact;
                 }
+                Some(command) = self.alert_commands.recv() => self.command_alert(&command),
                 Ok(()) = exclusion.changed() => {
                     let exclusion = *exclusion.borrow_and_update();
                     self.acquisition.sampler.set_exclusion(exclusion);
@@ -128,7 +135,7 @@ impl Agent {
                 Ok(()) = self.acknowledged.changed() => {
                     let seen = *self.acknowledged.borrow_and_update();
                     if let Some(id) = seen {
-                        self.alert_monitor.acknowledge(id);
+                        self.acknowledge_alert(id);
                     }
                 }
             }
@@ -152,7 +159,6 @@ impl Agent {
 
     async fn observe(&mut self, observations: &[Observation]) {
         let heard = Instant::now();
-        let compass = self.acquisition.readings.compass;
         for observation in observations {
             self.acquisition.observe(observation, heard);
             if let Some(time) = self.acquisition.time() {
@@ -163,9 +169,8 @@ impl Agent {
             }
         }
         self.update_alert();
-        if self.acquisition.readings.compass != compass {
-            self.send_heading(Trigger::Reading);
-        }
+        self.apply_commands(observations);
+        self.send_new_reading();
         if !self.acquisition.sampler.has_samples() {
             return;
         }
@@ -181,6 +186,7 @@ impl Agent {
 
     async fn run_every_second(&mut self) {
         self.update_alert();
+        self.compare_headings(Instant::now());
         self.collect();
         let seal = self.seal_due();
         let unstored = &self.unstored;

@@ -2,11 +2,11 @@
 
 use super::{Agent, CHANNEL_CAPACITY, Unstored};
 use crate::acquisition::Acquisition;
-use crate::alert::AlertMonitor;
+use crate::alert::{AlertMonitor, DifferenceMonitor};
 use crate::clock;
 use crate::config::{Config, InputConfig};
 use crate::input::{self, InputStats};
-use crate::output::{AlarmSentence, HeadingSentences, Outputs};
+use crate::output::{AlarmSentence, AlertSentences, HeadingSentences, Outputs};
 use crate::page::{self, PageState};
 use crate::raw_log::RawLog;
 use crate::sampler::Tally;
@@ -98,10 +98,16 @@ impl Agent {
             alert_commands,
             sentences: HeadingSentences::new(&config.output),
             exclusion,
+            difference_monitor: DifferenceMonitor::new(&config.alert),
             alert_monitor: AlertMonitor::new(config.alert, stored_alert, judged_by),
             stored_alert,
+            offered_reading: None,
             withheld: false,
             acknowledged: acknowledged_rx,
+            alert_sentences: config
+                .output
+                .alert_sentences
+                .then(|| AlertSentences::new(config.output.talker)),
             alarm: config.output.alarm_sentence.then(AlarmSentence::default),
             status,
             uplink,

@@ -5,7 +5,7 @@ mod text;
 
 pub(crate) use offline::offline_status;
 
-use crate::alert::AlertStatus;
+use crate::alert::{AlertStatus, HeadingDifferenceStatus};
 use crate::corrected_heading::{CardRow, CorrectedHeading};
 use crate::input::InputStatus;
 use crate::instruments::{Interference, SourceReport};
@@ -52,6 +52,9 @@ pub(crate) struct Status {
     /// Last alert of the agent itself, open or closed.
     #[serde(default)]
     pub(crate) alert: Option<AlertStatus>,
+    /// Last heading-difference alarm since the agent started, open or over.
+    #[serde(default)]
+    pub(crate) heading_difference: Option<HeadingDifferenceStatus>,
     pub(crate) gyro_deg: Option<TrueHeading>,
     pub(crate) satellite_deg: Option<TrueHeading>,
     pub(crate) sog_kn: Option<f64>,

@@ -42,6 +42,7 @@ impl Status {
             writeln!(out, "SOURCES    {problem}")?;
         }
         self.write_alert(out)?;
+        self.write_heading_difference(out)?;
         self.write_heading(out)?;
         match &self.model {
             Some(model) => {
@@ -94,6 +95,20 @@ impl Status {
         };
         writeln!(out, "ALERT      {}{seen}", alert.summary)?;
         writeln!(out, "           {}", alert.advice)
+    }
+
+    fn write_heading_difference(&self, out: &mut String) -> std::fmt::Result {
+        let open = self.heading_difference.as_ref();
+        let Some(difference) = open.filter(|known| known.alarm.is_open) else {
+            return Ok(());
+        };
+        let seen = if difference.alarm.acknowledged {
+            " (acknowledged)"
+        } else {
+            ""
+        };
+        writeln!(out, "ALERT      {}{seen}", difference.summary)?;
+        writeln!(out, "           {}", difference.advice)
     }
 
     fn write_heading(&self, out: &mut String) -> std::fmt::Result {

@@ -49,6 +49,28 @@ fn command() -> impl Strategy<Value = AlertCommand> {
     prop::sample::select(b"AQOS".to_vec()).prop_filter_map("no command", AlertCommand::from_letter)
 }
 
+fn command_to_alert() -> impl Strategy<Value = Data> {
+    (
+        time(),
+        of("[A-Z0-9]{3}"),
+        0..10_000_000_u32,
+        of(0..1_000_000_u32),
+        command(),
+    )
+        .prop_map(|(time, manufacturer, number, instance, command)| {
+            let letters = |text: String| text.into_bytes().try_into().expect("three letters");
+            Data::Acn(Acn {
+                time,
+                alert: AlertId {
+                    manufacturer: manufacturer.map(letters),
+                    number,
+                    instance,
+                },
+                command,
+            })
+        })
+}
+
 fn data() -> impl Strategy<Value = Data> {
     let any_number = || of(number(-999_999_999, 999_999_999));
     let magnitude = || of(number(0, 999_999_999));
@@ -143,25 +165,7 @@ fn data() -> impl Strategy<Value = Data> {
                 sequence,
             })
         }),
-        (
-            time(),
-            of("[A-Z0-9]{3}"),
-            0..10_000_000_u32,
-            of(0..1_000_000_u32),
-            command()
-        )
-            .prop_map(|(time, manufacturer, number, instance, command)| {
-                let letters = |text: String| text.into_bytes().try_into().expect("three letters");
-                Data::Acn(Acn {
-                    time,
-                    alert: AlertId {
-                        manufacturer: manufacturer.map(letters),
-                        number,
-                        instance,
-                    },
-                    command,
-                })
-            }),
+        command_to_alert(),
     ]
 }
 

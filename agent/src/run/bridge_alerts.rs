@@ -1,0 +1,90 @@
+//! The agent's alerts towards the bridge, and its commands to them.
+
+use super::Agent;
+use crate::alert::{AlertCondition, Comparison, DifferenceReference};
+use crate::corrected_heading::{CorrectionInputs, correct};
+use crate::instruments::{Latest, Observation, Reading};
+use crate::output::{AlertConditions, Trigger};
+use binnacle_nmea::sentence::Acn;
+use rand::RngExt;
+use tokio::time::Instant;
+use uuid::Uuid;
+
+impl Agent {
+    /// Compares the corrected heading with gyro or satellite compass.
+    pub(super) fn compare_headings(&mut self, now: Instant) {
+        let comparison = self.comparison(now);
+        let new_id = || uuid::Builder::from_random_bytes(rand::rng().random()).into_uuid();
+        if !self.difference_monitor.observe(comparison, now, new_id) {
+            return;
+        }
+        if let Some(alarm) = self.difference_monitor.last() {
+            tracing::warn!("{}", alarm.status().summary);
+        }
+    }
+
+    fn comparison(&self, now: Instant) -> Option<Comparison> {
+        let readings = &self.acquisition.readings;
+        let stale = self.silence.stale_s.duration();
+        let gyro = Latest::within(readings.gyro, stale, now);
+        let satellite = Latest::within(readings.satellite, stale, now);
+        let (reference_heading, reference) = match (gyro, satellite) {
+            (Some(heading), _) => (heading, DifferenceReference::Gyro),
+            (None, heading) => (heading?, DifferenceReference::SatelliteCompass),
+        };
+        let corrected = self.with_correction_inputs(|inputs| {
+            correct(CorrectionInputs {
+                // Compared even while an alert suspects the compass: it must not end the alarm.
+                compass_suspected: false,
+                ..inputs
+            })
+        });
+        Some(Comparison {
+            corrected: corrected.true_deg?,
+            reference_heading,
+            reference,
+        })
+    }
+
+    /// Acknowledges an alert of the agent.
+    pub(super) fn acknowledge_alert(&mut self, id: Uuid) {
+        self.alert_monitor.acknowledge(id);
+        self.difference_monitor.acknowledge(id);
+    }
+
+    /// Applies the commands among observations.
+    pub(super) fn apply_commands(&mut self, observations: &[Observation]) {
+        for observation in observations {
+            if let Reading::AlertCommand(command) = &observation.reading {
+                self.command_alert(command);
+            }
+        }
+    }
+
+    /// Applies a command of the bridge, and sends what follows from it.
+    pub(super) fn command_alert(&mut self, command: &Acn) {
+        let now = Instant::now();
+        self.update_alert_sentences(now);
+        let time = self.acquisition.time();
+        let Some(sentences) = &mut self.alert_sentences else {
+            return;
+        };
+        if let Some(id) = sentences.command(command, time, now) {
+            tracing::info!(%id, "the bridge acknowledged an alert");
+            self.acknowledge_alert(id);
+        }
+        self.send_heading(Trigger::Timer);
+    }
+
+    /// Passes the alerts as they are now to their sentences.
+    pub(super) fn update_alert_sentences(&mut self, now: Instant) {
+        let Some(sentences) = &mut self.alert_sentences else {
+            return;
+        };
+        let conditions = AlertConditions {
+            compass: self.alert_monitor.record().map(AlertCondition::from),
+            difference: self.difference_monitor.last().map(AlertCondition::from),
+        };
+        sentences.update(conditions, self.acquisition.time(), now);
+    }
+}
