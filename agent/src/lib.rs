@@ -25,7 +25,6 @@ mod uplink;
 
 mod card_invalidation;
 mod corrected_heading;
-mod output;
 
 mod page;
 mod status;

@@ -3,22 +3,8 @@
 
 use super::heading_difference::{DifferenceReference, HeadingDifference};
 use super::record::AlertRecord;
+use binnacle_output::AlertCondition;
 use binnacle_wire::alert::Suspect;
-use uuid::Uuid;
-
-/// Condition behind an alert.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct AlertCondition {
-    /// Occurrence: another one is unacknowledged again.
-    pub(crate) id: Uuid,
-    /// Set while the condition holds.
-    pub(crate) is_active: bool,
-    pub(crate) is_acknowledged: bool,
-    /// Title of at most 16 characters.
-    pub(crate) title: &'static str,
-    /// Description of at most 42 characters.
-    pub(crate) description: String,
-}
 
 impl From<&AlertRecord> for AlertCondition {
     fn from(record: &AlertRecord) -> AlertCondition {

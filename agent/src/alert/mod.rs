@@ -10,12 +10,13 @@
 //! - A revision is in the spool before it is published, together with the batch that carries it to
 //!   the server.
 
+mod alarm_sentence;
 mod condition;
 mod heading_difference;
 mod monitor;
 mod record;
 
-pub(crate) use condition::AlertCondition;
+pub(crate) use alarm_sentence::AlarmSentence;
 pub(crate) use heading_difference::{
     Comparison, DifferenceMonitor, DifferenceReference, HeadingDifference, HeadingDifferenceStatus,
 };

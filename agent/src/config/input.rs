@@ -1,6 +1,5 @@
 //! `[inputs.NAME]`: one input, of exactly one kind.
 
-use super::destination::SerialConfig;
 use serde::Deserialize;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::path::{Path, PathBuf};
@@ -87,6 +86,21 @@ impl TryFrom<InputTable> for InputConfig {
     }
 }
 
+/// Serial port to read.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SerialConfig {
+    /// Device, as `/dev/ttyUSB0`.
+    pub(crate) path: String,
+    /// Bits per second; IEC 61162-1 has 4800, 61162-2 38400.
+    #[serde(default = "standard_baud")]
+    pub(crate) baud: u32,
+}
+
+fn standard_baud() -> u32 {
+    4800
+}
+
 /// Host name or address, colon and port; resolved at each connection.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
@@ -151,13 +165,6 @@ impl TryFrom<GroupText> for Group {
             GroupText::Short(address) => (address, Ipv4Addr::UNSPECIFIED),
             GroupText::Long(long) => (long.group, long.interface),
         };
-        Group::new(address, interface)
-    }
-}
-
-impl Group {
-    /// Creates a group, or names an address that is none.
-    pub(super) fn new(address: SocketAddrV4, interface: Ipv4Addr) -> Result<Group, String> {
         if !address.ip().is_multicast() {
             return Err(format!("{address} is not a multicast address"));
         }

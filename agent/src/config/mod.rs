@@ -4,12 +4,9 @@
 //! that loads can run. Paths in the file are relative to the file.
 
 mod alert;
-mod destination;
 mod error;
 mod input;
 mod limits;
-mod line_load;
-mod output;
 mod profile;
 mod roles;
 mod silence;
@@ -18,13 +15,8 @@ mod uplink;
 pub(crate) use alert::AlertConfig;
 #[cfg(test)]
 pub(crate) use alert::GyroError;
-pub(crate) use destination::{
-    AddressConfig, MulticastConfig, Selection, SerialConfig, SerialOutputConfig, Sfi,
-};
 pub(crate) use error::ConfigError;
-pub(crate) use input::{Group, HostPort, InputConfig, SignalKUrl};
-pub(crate) use line_load::SHORTEST_INTERVAL_SHARE;
-pub(crate) use output::{OutputConfig, SentenceConfig, SentenceKind};
+pub(crate) use input::{Group, HostPort, InputConfig, SerialConfig, SignalKUrl};
 #[cfg(test)]
 pub(crate) use profile::max_burst_batch_bytes;
 pub(crate) use profile::{ConnectionPolicy, Profile, UploadPlan};
@@ -32,6 +24,7 @@ pub(crate) use roles::{RolesConfig, SourceConfig};
 pub(crate) use silence::SilenceConfig;
 pub(crate) use uplink::{ModemConfig, UplinkConfig};
 
+use binnacle_output::config::OutputConfig;
 use error::Problem;
 #[cfg(test)]
 use limits::PositiveSeconds;
@@ -124,7 +117,10 @@ fn parse(text: &str) -> Result<Config, Problem> {
         }
     }
     config.uplink.check(config.modem.as_ref())?;
-    config.output.check()?;
+    config.output.check().map_err(|wrong| Problem {
+        span: Some(wrong.span),
+        problem: wrong.problem,
+    })?;
     Ok(config)
 }
 
@@ -168,7 +164,7 @@ stale_s = 15
     fn a_whole_configuration_loads() {
         let config = parse(WHOLE).map_err(|w| w.problem).unwrap();
         assert_eq!(config.roles.compass.len(), 1);
-        assert_eq!(config.output.interval_s, PositiveSeconds(1.0));
+        assert!((config.output.interval_s.seconds() - 1.0).abs() < 1e-9);
         assert_eq!(config.page.unwrap().listen.port(), 8090);
     }
 
@@ -210,7 +206,7 @@ stale_s = 15
         let wrong = WHOLE.replace("interval_s = 1", "interval_s = -1");
         assert_eq!(
             message(&wrong),
-            "agent.toml:14: interval_s: -1 is not from 0.01 to 31557600 seconds"
+            "agent.toml:14: interval_s: -1 is not from 0.01 to 3600 seconds"
         );
         let wrong = WHOLE.replace("poll_s = 21600", "pol_s = 21600");
         assert!(message(&wrong).starts_with("agent.toml:19: unknown field `pol_s`"));
@@ -237,6 +233,22 @@ stale_s = 15
             "agent.toml:3: ring_mb: 0.5 is neither 0 nor from 1 to 10000 megabytes"
         );
         assert!(message("").contains("data_dir"));
+    }
+
+    #[test]
+    fn a_rate_that_a_serial_line_cannot_carry_is_named_where_it_is_written() {
+        let line = "interval_s = 0.1\nserial = { path = \"/dev/a\", baud = 4800 }";
+        let wrong = message(&WHOLE.replace("interval_s = 1", line));
+        assert!(
+            wrong.starts_with("agent.toml:15: baud: 4800 baud carry 480 bytes a second, but HDG,"),
+            "{wrong}"
+        );
+        let standard = "interval_s = 0.1\nserial = [{ path = \"/dev/a\" }]";
+        let wrong = message(&WHOLE.replace("interval_s = 1", standard));
+        assert!(
+            wrong.starts_with("agent.toml:15: path: 4800 baud carry"),
+            "{wrong}"
+        );
     }
 
     #[test]

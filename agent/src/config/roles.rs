@@ -189,12 +189,6 @@ fn two_letters<'de, D: Deserializer<'de>>(d: D) -> Result<Option<[u8; 2]>, D::Er
     letters(d, "two capital letters, as \"HC\"")
 }
 
-/// Reads a talker.
-pub(super) fn two_capitals<'de, D: Deserializer<'de>>(d: D) -> Result<[u8; 2], D::Error> {
-    let talker = two_letters(d)?;
-    talker.ok_or_else(|| serde::de::Error::custom("a talker has two capital letters"))
-}
-
 fn three_letters<'de, D: Deserializer<'de>>(d: D) -> Result<Option<[u8; 3]>, D::Error> {
     letters(d, "three capital letters, as \"HDG\"")
 }

@@ -1,11 +1,11 @@
 //! The agent's alerts towards the bridge, and its commands to them.
 
 use super::Agent;
-use crate::alert::{AlertCondition, Comparison, DifferenceReference};
+use crate::alert::{Comparison, DifferenceReference};
 use crate::corrected_heading::{CorrectionInputs, correct};
 use crate::instruments::{Latest, Observation, Reading};
-use crate::output::{AlertConditions, Trigger};
 use binnacle_nmea::sentence::Acn;
+use binnacle_output::{AlertCondition, AlertConditions, Trigger};
 use rand::RngExt;
 use tokio::time::Instant;
 use uuid::Uuid;

@@ -2,12 +2,12 @@
 
 use super::{Agent, CHANNEL_CAPACITY};
 use crate::alert::AlertRecord;
-use crate::config::SentenceKind;
 use crate::corrected_heading::{self, CardRow, CorrectedHeading, CorrectionInputs};
 use crate::instruments::{Latest, SentHeading};
-use crate::output::{Line, Quality, Trigger};
 use crate::status::ModelStatus;
 use crate::{card_invalidation, clock};
+use binnacle_output::config::SentenceKind;
+use binnacle_output::{Heading, Line, Quality, Trigger};
 use binnacle_wire::messages::CardWithdrawn;
 use tokio::time::Instant;
 
@@ -99,9 +99,9 @@ impl Agent {
             age_days: model.age_days.unwrap_or_default(),
         });
         let interval = self.acquisition.readings.compass_interval();
-        let mut lines = self
-            .sentences
-            .due(&corrected, quality, trigger, interval, now);
+        let mut lines =
+            self.sentences
+                .due(&output_heading(&corrected), quality, trigger, interval, now);
         if let Some(sent) = sent_heading(&corrected).filter(|_| !lines.is_empty()) {
             self.acquisition.note_sent(sent, now);
         }
@@ -135,6 +135,17 @@ impl Agent {
     }
 }
 
+/// Returns the heading as its sentences carry it.
+fn output_heading(corrected: &CorrectedHeading) -> Heading {
+    Heading {
+        compass: corrected.compass_deg,
+        deviation: corrected.deviation_deg,
+        variation: corrected.variation_deg,
+        true_heading: corrected.true_deg,
+        standard_error_deg: corrected.standard_error_deg,
+    }
+}
+
 /// Returns the content of HDG, if it has all three angles.
 fn sent_heading(corrected: &CorrectedHeading) -> Option<SentHeading> {
     corrected.magnetic_deg?;
@@ -143,4 +154,107 @@ fn sent_heading(corrected: &CorrectedHeading) -> Option<SentHeading> {
         deviation: corrected.deviation_deg?,
         variation: corrected.variation_deg?,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::corrected_heading::correct;
+    use crate::corrected_heading::tests::model;
+    use binnacle_compass::angle::CompassHeading;
+    use binnacle_compass::position::Position;
+    use binnacle_compass::time::Timestamp;
+    use binnacle_nmea::Data;
+    use binnacle_nmea::sentence::ThsMode;
+    use binnacle_output::HeadingSentences;
+    use std::time::Duration;
+
+    /// Inputs of a heading that is given, and of one that is withheld for each reason.
+    fn with_each_reason(mut each: impl FnMut(&str, CorrectionInputs<'_>)) {
+        let (good, wide) = (model(2_400.0, None), model(0.0, Some(36.0)));
+        let ambiguous = model(1e6, None);
+        let withdrawn = CardWithdrawn {
+            since: Timestamp::parse("2026-11-21T06:00:00Z").unwrap(),
+            reason: "corrector_change".to_owned(),
+        };
+        let given = CorrectionInputs {
+            compass: CompassHeading::new(77.7),
+            position: Position::new(43.3, -3.0).ok(),
+            time: Timestamp::parse("2026-11-21T07:00:00Z").ok(),
+            model: Some(&good),
+            ..CorrectionInputs::default()
+        };
+        each("", given);
+        let compass = None;
+        each("silent", CorrectionInputs { compass, ..given });
+        let compass_is_mixed = true;
+        each(
+            "two sensors",
+            CorrectionInputs {
+                compass_is_mixed,
+                ..given
+            },
+        );
+        let position = None;
+        each("position", CorrectionInputs { position, ..given });
+        let position = Position::new(-64.0, 136.0).ok();
+        each("too weak", CorrectionInputs { position, ..given });
+        let time = None;
+        each("time", CorrectionInputs { time, ..given });
+        let model = None;
+        each("no model", CorrectionInputs { model, ..given });
+        let model = Some(&wide);
+        each("known only to", CorrectionInputs { model, ..given });
+        let model = Some(&ambiguous);
+        each("", CorrectionInputs { model, ..given });
+        let withdrawn = Some(&withdrawn);
+        each("has not held", CorrectionInputs { withdrawn, ..given });
+        let compass_suspected = true;
+        each(
+            "suspects",
+            CorrectionInputs {
+                compass_suspected,
+                ..given
+            },
+        );
+    }
+
+    #[test]
+    fn while_a_heading_is_withheld_for_whatever_reason_nothing_can_be_read_as_one() {
+        let mut given = 0;
+        with_each_reason(|reason, inputs| {
+            let corrected = correct(inputs);
+            let config = toml::from_str("hdt = true").unwrap();
+            let mut sentences = HeadingSentences::new(&config);
+            let now = Instant::now();
+            let lines = sentences.due(
+                &output_heading(&corrected),
+                None,
+                Trigger::Timer,
+                Duration::ZERO,
+                now,
+            );
+            let said = format!("{lines:?}");
+            if corrected.true_deg.is_some() {
+                given += 1;
+                assert_eq!(lines.len(), 4, "{said}");
+                return;
+            }
+            let problem = corrected.problem.unwrap();
+            assert!(problem.contains(reason), "{problem}");
+            assert_eq!(lines.len(), 3, "{problem}: {said}");
+            for line in lines {
+                match binnacle_nmea::parse(&line.text).map(|read| read.data) {
+                    Ok(Data::Hdg(hdg)) => {
+                        assert_eq!((hdg.reading_deg, hdg.deviation_deg_east), (None, None));
+                    }
+                    Ok(Data::Ths(ths)) => {
+                        assert_eq!((ths.heading_deg_true, ths.mode), (None, ThsMode::NotValid));
+                    }
+                    _ => assert!(line.text.starts_with(b"$PBINQ,V,"), "{said}"),
+                }
+            }
+        });
+        assert_eq!(given, 1);
+    }
 }

@@ -2,11 +2,10 @@
 
 use super::{Agent, CHANNEL_CAPACITY, Unstored};
 use crate::acquisition::Acquisition;
-use crate::alert::{AlertMonitor, DifferenceMonitor};
+use crate::alert::{AlarmSentence, AlertMonitor, DifferenceMonitor};
 use crate::clock;
 use crate::config::{Config, InputConfig};
 use crate::input::{self, InputStats};
-use crate::output::{AlarmSentence, AlertSentences, HeadingSentences, Outputs};
 use crate::page::{self, PageState};
 use crate::raw_log::RawLog;
 use crate::sampler::Tally;
@@ -15,6 +14,7 @@ use crate::spool::Spool;
 use crate::status::Status;
 use crate::uplink;
 use anyhow::Context;
+use binnacle_output::{AlertSentences, HeadingSentences, Outputs};
 use std::sync::Arc;
 use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;

@@ -4,6 +4,8 @@
 //! No sentence is longer than the 82 bytes of IEC 61162-1: texts are cut, and an alert list is
 //! spread over several sentences.
 
+pub use crate::sentence::{AlertCommand, AlertId};
+
 use crate::checksum;
 use crate::print;
 use crate::time::TimeOfDay;
@@ -18,53 +20,6 @@ const END_BYTES: usize = 5;
 const ENTRIES_PER_SENTENCE: usize = 2;
 /// Characters with a meaning of their own in a sentence.
 const RESERVED: &[u8] = b"$*,!\\^~";
-
-/// Identity of an alert.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct AlertId {
-    /// Mnemonic of the manufacturer; `None` for an alert that the standards define.
-    pub manufacturer: Option<[u8; 3]>,
-    /// Alert identifier, at most 9,999,999; manufacturers' own begin at 10,000.
-    pub number: u32,
-    /// Instance, 1 to 999,999; `None` where there is only one.
-    pub instance: Option<u32>,
-}
-
-/// Command to an alert, or refused command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AlertCommand {
-    /// A: acknowledges.
-    Acknowledge,
-    /// Q: requests the alert's sentences again.
-    Request,
-    /// O: takes over the responsibility.
-    Transfer,
-    /// S: silences for a while.
-    Silence,
-}
-
-impl AlertCommand {
-    /// The command that a letter stands for.
-    pub fn from_letter(letter: u8) -> Option<AlertCommand> {
-        Some(match letter {
-            b'A' => AlertCommand::Acknowledge,
-            b'Q' => AlertCommand::Request,
-            b'O' => AlertCommand::Transfer,
-            b'S' => AlertCommand::Silence,
-            _ => return None,
-        })
-    }
-
-    /// The letter in the sentence.
-    pub fn letter(self) -> u8 {
-        match self {
-            AlertCommand::Acknowledge => b'A',
-            AlertCommand::Request => b'Q',
-            AlertCommand::Transfer => b'O',
-            AlertCommand::Silence => b'S',
-        }
-    }
-}
 
 /// Priority of an alert.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

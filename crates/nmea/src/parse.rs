@@ -1,12 +1,11 @@
 //! Reads one sentence.
 
-use crate::alert::{AlertCommand, AlertId};
 use crate::checksum;
 use crate::fields::Fields;
 use crate::rejected::Rejected;
 use crate::sentence::{
-    Acn, Data, Gga, Gll, Hbt, Hdg, Hdm, Hdt, Kind, Mta, Rmc, Rot, Sentence, Ths, ThsMode, Vhw, Vtg,
-    Xdr, Zda,
+    Acn, AlertCommand, AlertId, Data, Gga, Gll, Hbt, Hdg, Hdm, Hdt, Kind, Mta, Rmc, Rot, Sentence,
+    Ths, ThsMode, Vhw, Vtg, Xdr, Zda,
 };
 use crate::time::Date;
 

@@ -2,7 +2,6 @@
 //!
 //! Directions are degrees in [0, 360); differences are positive to the east.
 
-use crate::alert::{AlertCommand, AlertId};
 use crate::time::{Date, TimeOfDay, unix_micros};
 
 /// A sentence that was read, or is to be written.
@@ -281,6 +280,53 @@ pub struct Acn {
     pub alert: AlertId,
     /// Command.
     pub command: AlertCommand,
+}
+
+/// Identity of an alert.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct AlertId {
+    /// Mnemonic of the manufacturer; `None` for an alert that the standards define.
+    pub manufacturer: Option<[u8; 3]>,
+    /// Alert identifier, at most 9,999,999; manufacturers' own begin at 10,000.
+    pub number: u32,
+    /// Instance, 1 to 999,999; `None` where there is only one.
+    pub instance: Option<u32>,
+}
+
+/// Command to an alert, or refused command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AlertCommand {
+    /// A: acknowledges.
+    Acknowledge,
+    /// Q: requests the alert's sentences again.
+    Request,
+    /// O: takes over the responsibility.
+    Transfer,
+    /// S: silences for a while.
+    Silence,
+}
+
+impl AlertCommand {
+    /// The command that a letter stands for.
+    pub fn from_letter(letter: u8) -> Option<AlertCommand> {
+        Some(match letter {
+            b'A' => AlertCommand::Acknowledge,
+            b'Q' => AlertCommand::Request,
+            b'O' => AlertCommand::Transfer,
+            b'S' => AlertCommand::Silence,
+            _ => return None,
+        })
+    }
+
+    /// The letter in the sentence.
+    pub fn letter(self) -> u8 {
+        match self {
+            AlertCommand::Acknowledge => b'A',
+            AlertCommand::Request => b'Q',
+            AlertCommand::Transfer => b'O',
+            AlertCommand::Silence => b'S',
+        }
+    }
 }
 
 /// The kind of a sentence: its three letters.

@@ -13,7 +13,7 @@ const CHUNK_BYTES: usize = 1024;
 
 /// Reads commands for as long as a receiver can be written to: one that sends nothing more may
 /// still listen.
-pub(super) async fn read_commands(
+pub(crate) async fn read_commands(
     mut receiver: impl AsyncRead + Unpin,
     commands: &mpsc::Sender<Acn>,
 ) -> Infallible {

@@ -1,7 +1,7 @@
 //! One alert as bridge alert management (IEC 62923-1) handles it: a warning of category B with its
 //! state, which conditions and commands change.
 
-use crate::alert::AlertCondition;
+use crate::condition::AlertCondition;
 use binnacle_nmea::alert::{
     Alert, AlertCategory, AlertCommand, AlertId, AlertPriority, AlertState,
 };
@@ -11,7 +11,7 @@ use tokio::time::Instant;
 use uuid::Uuid;
 
 /// Mnemonic that the alerts' identifiers belong to, as that of PBINQ.
-pub(super) const MANUFACTURER: [u8; 3] = *b"BIN";
+pub(crate) const MANUFACTURER: [u8; 3] = *b"BIN";
 /// Time for which an alert is silenced (IMO MSC.302(87): 30 seconds).
 const SILENCE: Duration = Duration::from_secs(30);
 /// Time after which an unacknowledged warning escalates (IMO MSC.302(87): at most five minutes).
@@ -21,7 +21,7 @@ const MAX_ESCALATION: u8 = 9;
 
 /// Alert with its state.
 #[derive(Debug)]
-pub(super) struct ManagedAlert {
+pub(crate) struct ManagedAlert {
     number: u32,
     condition: Option<AlertCondition>,
     state: AlertState,
@@ -35,7 +35,7 @@ pub(super) struct ManagedAlert {
 
 /// Effect of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Effect {
+pub(crate) enum Effect {
     /// An occurrence is acknowledged.
     Acknowledged(Uuid),
     /// The alert is silenced from the next update on.
@@ -48,7 +48,7 @@ pub(super) enum Effect {
 
 impl ManagedAlert {
     /// Creates an alert in the normal state.
-    pub(super) fn new(number: u32) -> ManagedAlert {
+    pub(crate) fn new(number: u32) -> ManagedAlert {
         ManagedAlert {
             number,
             condition: None,
@@ -61,7 +61,7 @@ impl ManagedAlert {
         }
     }
 
-    pub(super) fn id(&self) -> AlertId {
+    pub(crate) fn id(&self) -> AlertId {
         AlertId {
             manufacturer: Some(MANUFACTURER),
             number: self.number,
@@ -70,23 +70,23 @@ impl ManagedAlert {
     }
 
     /// Returns whether a command names this alert. An instance may be left out: there is one.
-    pub(super) fn is_named_by(&self, id: AlertId) -> bool {
+    pub(crate) fn is_named_by(&self, id: AlertId) -> bool {
         let own = self.id();
         id.manufacturer == own.manufacturer
             && id.number == own.number
             && matches!(id.instance, None | Some(1))
     }
 
-    pub(super) fn is_normal(&self) -> bool {
+    pub(crate) fn is_normal(&self) -> bool {
         self.state == AlertState::Normal
     }
 
-    pub(super) fn revision(&self) -> u8 {
+    pub(crate) fn revision(&self) -> u8 {
         self.revision
     }
 
     /// Applies the condition as it is now. Returns whether the alert's sentences have changed.
-    pub(super) fn update(
+    pub(crate) fn update(
         &mut self,
         condition: Option<AlertCondition>,
         time: Option<TimeOfDay>,
@@ -146,7 +146,7 @@ impl ManagedAlert {
 
     /// Applies a command. Responsibility cannot be transferred: only the agent can judge whether
     /// the compass is right.
-    pub(super) fn command(&mut self, command: AlertCommand, now: Instant) -> Effect {
+    pub(crate) fn command(&mut self, command: AlertCommand, now: Instant) -> Effect {
         match (command, self.state, &self.condition) {
             (AlertCommand::Request, ..) => Effect::Requested,
             (
@@ -163,7 +163,7 @@ impl ManagedAlert {
     }
 
     /// Returns the contents of the alert's sentences.
-    pub(super) fn alert(&self) -> Alert<'_> {
+    pub(crate) fn alert(&self) -> Alert<'_> {
         let condition = self.condition.as_ref();
         Alert {
             id: self.id(),

@@ -5,11 +5,11 @@
 //! Commands name an alert by manufacturer, number and instance. Those to the alerts of other
 //! equipment, which come by on a shared line, are ignored.
 
-use super::framing::frame_sentence;
-use super::line::Line;
-use super::managed_alert::{Effect, MANUFACTURER, ManagedAlert};
-use crate::alert::AlertCondition;
+use crate::condition::AlertCondition;
 use crate::config::SentenceKind;
+use crate::framing::frame_sentence;
+use crate::line::Line;
+use crate::managed_alert::{Effect, MANUFACTURER, ManagedAlert};
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::alert::{AlertId, write_alc, write_alf, write_arc};
 use binnacle_nmea::sentence::Acn;
@@ -27,14 +27,16 @@ const DIFFERENCE_ALERT: u32 = 10_002;
 
 /// Conditions of the agent's alerts.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct AlertConditions {
-    pub(crate) compass: Option<AlertCondition>,
-    pub(crate) difference: Option<AlertCondition>,
+pub struct AlertConditions {
+    /// Compass and references disagree.
+    pub compass: Option<AlertCondition>,
+    /// Corrected heading and reference differ by more than a limit.
+    pub difference: Option<AlertCondition>,
 }
 
 /// Alerts, and the sentences about them that wait to be sent.
 #[derive(Debug)]
-pub(crate) struct AlertSentences {
+pub struct AlertSentences {
     talker: [u8; 2],
     compass: ManagedAlert,
     difference: ManagedAlert,
@@ -47,7 +49,7 @@ pub(crate) struct AlertSentences {
 
 impl AlertSentences {
     /// Creates the sentences of a talker.
-    pub(crate) fn new(talker: [u8; 2]) -> AlertSentences {
+    pub fn new(talker: [u8; 2]) -> AlertSentences {
         AlertSentences {
             talker,
             compass: ManagedAlert::new(COMPASS_ALERT),
@@ -61,12 +63,7 @@ impl AlertSentences {
     }
 
     /// Applies the conditions as they are now.
-    pub(crate) fn update(
-        &mut self,
-        conditions: AlertConditions,
-        time: Option<Timestamp>,
-        now: Instant,
-    ) {
+    pub fn update(&mut self, conditions: AlertConditions, time: Option<Timestamp>, now: Instant) {
         let time = time.and_then(time_of_day);
         if self.compass.update(conditions.compass, time, now) {
             self.report(COMPASS_ALERT);
@@ -77,7 +74,7 @@ impl AlertSentences {
     }
 
     /// Applies a command. Returns the alert that it acknowledges.
-    pub(crate) fn command(
+    pub fn command(
         &mut self,
         command: &Acn,
         time: Option<Timestamp>,
@@ -120,7 +117,7 @@ impl AlertSentences {
     }
 
     /// Returns the sentences that are due.
-    pub(crate) fn due(&mut self, now: Instant) -> Vec<Line> {
+    pub fn due(&mut self, now: Instant) -> Vec<Line> {
         let is_list_due = self
             .list_sent
             .is_none_or(|sent| now.saturating_duration_since(sent) >= LIST_INTERVAL);

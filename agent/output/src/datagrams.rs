@@ -1,9 +1,9 @@
 //! Datagrams of the output: plain sentences, or those of an IEC 61162-450 network with a header and
 //! a TAG block before each sentence.
 
-use super::line::{Line, select};
 use crate::config::{AddressConfig, MulticastConfig, Selection, Sfi};
-use anyhow::Context;
+use crate::line::{Line, select};
+use crate::open_error::OpenError;
 use binnacle_nmea::datagram;
 use binnacle_nmea::tag::Tag;
 use socket2::{Domain, Protocol, Socket, Type};
@@ -17,7 +17,7 @@ const MAX_LINE_COUNT: u16 = 999;
 
 /// Destination of datagrams. It never blocks: what the kernel does not take is lost.
 #[derive(Debug)]
-pub(super) struct Datagrams {
+pub(crate) struct Datagrams {
     socket: UdpSocket,
     target: SocketAddr,
     selection: Selection,
@@ -35,19 +35,18 @@ struct LineTags {
 
 impl Datagrams {
     /// Opens a destination of plain sentences.
-    pub(super) fn plain(config: &AddressConfig) -> anyhow::Result<Datagrams> {
+    pub(crate) fn plain(config: &AddressConfig) -> Result<Datagrams, OpenError> {
         let target = config.address;
         let any: SocketAddr = if target.is_ipv4() {
             (Ipv4Addr::UNSPECIFIED, 0).into()
         } else {
             (std::net::Ipv6Addr::UNSPECIFIED, 0).into()
         };
-        let socket = UdpSocket::bind(any)
-            .with_context(|| format!("output.udp {target}: cannot open a socket"))?;
-        socket
-            .set_broadcast(true)
-            .with_context(|| format!("output.udp {target}: cannot broadcast"))?;
-        socket.set_nonblocking(true)?;
+        let socket = plain_socket(any).map_err(|source| OpenError {
+            field: "udp",
+            address: target,
+            source,
+        })?;
         Ok(Datagrams {
             socket,
             target,
@@ -57,13 +56,19 @@ impl Datagrams {
     }
 
     /// Opens a transmission group, as the first system function of `talker` if no other is set.
-    pub(super) fn tagged(config: &MulticastConfig, talker: [u8; 2]) -> anyhow::Result<Datagrams> {
-        let target = config.group.address;
-        let socket = multicast_socket(config.group.interface)
-            .with_context(|| format!("output.multicast {target}: cannot open a socket"))?;
+    pub(crate) fn tagged(
+        config: &MulticastConfig,
+        talker: [u8; 2],
+    ) -> Result<Datagrams, OpenError> {
+        let target = config.group.into();
+        let socket = multicast_socket(config.interface).map_err(|source| OpenError {
+            field: "multicast",
+            address: target,
+            source,
+        })?;
         Ok(Datagrams {
             socket,
-            target: target.into(),
+            target,
             selection: config.sentences.clone(),
             tags: Some(LineTags {
                 sfi: config.sfi.unwrap_or(Sfi::first_of(talker)),
@@ -74,7 +79,7 @@ impl Datagrams {
     }
 
     /// Sends the selected lines.
-    pub(super) fn send(&mut self, lines: &[Line]) {
+    pub(crate) fn send(&mut self, lines: &[Line]) {
         let selected = select(lines, &self.selection);
         let datagrams = match &mut self.tags {
             Some(tags) => tags.datagrams(selected),
@@ -86,6 +91,13 @@ impl Datagrams {
             }
         }
     }
+}
+
+fn plain_socket(any: SocketAddr) -> io::Result<UdpSocket> {
+    let socket = UdpSocket::bind(any)?;
+    socket.set_broadcast(true)?;
+    socket.set_nonblocking(true)?;
+    Ok(socket)
 }
 
 fn multicast_socket(interface: Ipv4Addr) -> io::Result<UdpSocket> {

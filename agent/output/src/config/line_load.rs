@@ -1,8 +1,8 @@
 //! Load of serial lines: a rate that a line cannot carry is refused.
 
 use super::destination::SerialOutputConfig;
-use super::error::Problem;
-use super::output::{OutputConfig, SentenceKind};
+use super::sentence::SentenceKind;
+use super::{ConfigProblem, OutputConfig};
 
 /// Bits of a byte on the line: a start bit, eight data bits and a stop bit.
 const BITS_PER_BYTE: f64 = 10.0;
@@ -30,13 +30,13 @@ impl SentenceKind {
 
 impl OutputConfig {
     /// Refuses serial lines that cannot carry their sentences.
-    pub(super) fn check_lines(&self) -> Result<(), Problem> {
+    pub(super) fn check_lines(&self) -> Result<(), ConfigProblem> {
         self.serial
             .iter()
             .try_for_each(|line| self.check_line(line))
     }
 
-    fn check_line(&self, line: &SerialOutputConfig) -> Result<(), Problem> {
+    fn check_line(&self, line: &SerialOutputConfig) -> Result<(), ConfigProblem> {
         let carried = f64::from(line.baud()) / BITS_PER_BYTE;
         let sent = SentenceKind::ALL.into_iter();
         let sent = sent.filter(|kind| self.is_sent(*kind) && line.sentences.includes(*kind));
@@ -50,8 +50,8 @@ impl OutputConfig {
             Some(baud) => baud.span(),
             None => line.path.span(),
         };
-        Err(Problem {
-            span: Some(span),
+        Err(ConfigProblem {
+            span,
             problem: format!(
                 "{} baud carry {carried:.0} bytes a second, but {} need {:.0}: set a higher baud, \
                  a longer interval_s, or fewer sentences",
@@ -67,7 +67,7 @@ impl OutputConfig {
             SentenceKind::Hdg => self.interval_s(self.hdg),
             SentenceKind::Ths => self.interval_s(self.ths),
             SentenceKind::Hdt => self.interval_s(self.hdt),
-            SentenceKind::Pbinq => self.interval_s.0,
+            SentenceKind::Pbinq => self.interval_s.seconds(),
             SentenceKind::Alr | SentenceKind::Alf => ALERT_INTERVAL_S,
         };
         f64::from(kind.max_bytes()) / (interval_s * SHORTEST_INTERVAL_SHARE)
@@ -76,53 +76,59 @@ impl OutputConfig {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::message;
+    use super::*;
 
-    fn config(output: &str) -> String {
-        format!("data_dir = \"d\"\n[output]\n{output}")
-    }
-
-    fn is_carried(output: &str) -> bool {
-        super::super::parse(&config(output)).is_ok()
+    /// Returns the text that is refused, and why.
+    fn refused(text: &str) -> Option<(&str, String)> {
+        let config: OutputConfig = toml::from_str(text).unwrap();
+        let refused = config.check().err()?;
+        Some((&text[refused.span], refused.problem))
     }
 
     #[test]
     fn a_line_carries_what_its_baud_rate_allows_and_no_more() {
-        let line = |baud: u32| format!("serial = {{ path = \"/dev/a\", baud = {baud} }}\n");
-        assert!(is_carried(&line(4800)));
-        let ten_hz = "hdg = false\nths = { interval_s = 0.1 }\n";
-        assert!(is_carried(&format!("{}{ten_hz}", line(4800))));
-        let both = "hdt = { interval_s = 0.1 }\n";
-        assert!(is_carried(&format!("{}{ten_hz}{both}", line(4800))));
+        let is_carried = |baud: u32, output: &str| {
+            let line = format!("serial = {{ path = \"/dev/a\", baud = {baud} }}\n{output}");
+            refused(&line).is_none()
+        };
+        assert!(is_carried(4800, ""));
+        assert!(!is_carried(300, ""));
+        let ths = "hdg = false\nths = { interval_s = 0.1 }\n";
+        assert!(is_carried(4800, ths));
+        let both = format!("{ths}hdt = {{ interval_s = 0.1 }}\n");
+        assert!(is_carried(4800, &both));
         let all = "interval_s = 0.1\nhdt = true\n";
-        assert!(!is_carried(&format!("{}{all}", line(4800))));
-        assert!(is_carried(&format!("{}{all}", line(38_400))));
-        assert!(!is_carried("serial = { path = \"/dev/a\", baud = 300 }"));
+        assert!(!is_carried(4800, all));
+        assert!(is_carried(38_400, all));
+        let alerts = "alert_sentences = true\nalarm_sentence = true\n";
+        assert!(is_carried(1200, "") && !is_carried(1200, &format!("{alerts}hdt = true\n")));
     }
 
     #[test]
-    fn a_rate_too_high_is_named_by_line_and_field() {
+    fn a_rate_too_high_is_refused_at_the_baud_rate_of_its_line() {
         let output = "interval_s = 0.1\nserial = [\n    { path = \"/dev/a\", baud = 38400 },\n    \
                       { path = \"/dev/b\", baud = 4800 },\n]";
+        let (value, problem) = refused(output).unwrap();
+        assert_eq!(value, "4800");
         assert_eq!(
-            message(&config(output)),
-            "agent.toml:6: baud: 4800 baud carry 480 bytes a second, but HDG, THS, PBINQ need 939: \
-             set a higher baud, a longer interval_s, or fewer sentences"
+            problem,
+            "4800 baud carry 480 bytes a second, but HDG, THS, PBINQ need 939: set a higher baud, \
+             a longer interval_s, or fewer sentences"
         );
         let standard = "interval_s = 0.1\nserial = { path = \"/dev/a\" }";
-        let problem = message(&config(standard));
-        assert!(
-            problem.starts_with("agent.toml:4: path: 4800 baud carry 480"),
-            "{problem}"
-        );
+        assert_eq!(refused(standard).unwrap().0, "\"/dev/a\"");
     }
 
     #[test]
     fn only_the_sentences_on_the_line_count() {
-        let output =
-            "interval_s = 0.1\nhdt = true\nserial = { path = \"/dev/a\", sentences = [\"HDT\"] }";
-        assert!(is_carried(output));
-        let output = "interval_s = 0.1\nhdt = true\nserial = { path = \"/dev/a\", sentences = [\"HDT\", \"HDG\"] }";
-        assert!(message(&config(output)).contains("HDG, HDT need 531"));
+        let line = |sentences: &str| {
+            format!(
+                "interval_s = 0.1\nhdt = true\nserial = {{ path = \"/dev/a\", sentences = {sentences} }}"
+            )
+        };
+        assert_eq!(refused(&line("[\"HDT\"]")), None);
+        let both = line("[\"HDT\", \"HDG\"]");
+        let (_, problem) = refused(&both).unwrap();
+        assert!(problem.contains("HDG, HDT need 531"), "{problem}");
     }
 }

@@ -4,9 +4,9 @@
 //! waits in the kernel. What waits here is replaced by what is newer, and thrown away while the
 //! port is gone.
 
-use super::bridge_commands::read_commands;
-use super::line::Line;
+use crate::bridge_commands::read_commands;
 use crate::config::SerialOutputConfig;
+use crate::line::Line;
 use binnacle_nmea::sentence::Acn;
 use std::collections::VecDeque;
 use std::io;
@@ -29,7 +29,7 @@ const BITS_PER_BYTE: f64 = 10.0;
 const MAX_WAITING_ALERTS: usize = 32;
 
 /// Writes to a port until `shutdown`, and reads its commands.
-pub(super) async fn write_serial(
+pub(crate) async fn write_serial(
     config: SerialOutputConfig,
     mut lines: broadcast::Receiver<Arc<[Line]>>,
     commands: mpsc::Sender<Acn>,
@@ -80,8 +80,8 @@ async fn use_port(
     (received.unsplit(sent), ended)
 }
 
-async fn write_lines(
-    port: &mut (impl AsyncWrite + Unpin),
+async fn write_lines<P: AsyncWrite + Unpin>(
+    port: &mut P,
     lines: &mut broadcast::Receiver<Arc<[Line]>>,
     baud: u32,
 ) -> io::Result<()> {

@@ -4,9 +4,9 @@
 //! is open and V otherwise; acknowledged A or V. It is sent at once after a change, and every half
 //! minute.
 
-use super::framing::frame_sentence;
-use crate::alert::AlertRecord;
+use super::record::AlertRecord;
 use crate::instruments::AGENT_TALKER;
+use binnacle_output::frame_sentence;
 use binnacle_wire::alert::ShipAlertState;
 use std::time::Duration;
 use tokio::time::Instant;

@@ -4,8 +4,8 @@
 //! buffers little, and not for long, and the buffer of a dropped client is discarded. Data that its
 //! own computer has already received cannot be recalled.
 
-use super::bridge_commands::read_commands;
-use super::line::Line;
+use crate::bridge_commands::read_commands;
+use crate::line::Line;
 use binnacle_nmea::sentence::Acn;
 use socket2::SockRef;
 use std::fmt;
@@ -29,10 +29,10 @@ const CLIENT_BUFFER_BYTES: usize = 4096;
 
 /// Server that sends the same lines to every client.
 #[derive(Clone, Debug)]
-pub(super) struct TcpClients {
-    pub(super) lines: broadcast::Sender<Arc<[Line]>>,
-    pub(super) commands: mpsc::Sender<Acn>,
-    pub(super) write_timeout: Duration,
+pub(crate) struct TcpClients {
+    pub(crate) lines: broadcast::Sender<Arc<[Line]>>,
+    pub(crate) commands: mpsc::Sender<Acn>,
+    pub(crate) write_timeout: Duration,
 }
 
 /// Reason for the end of a client's connection.
@@ -60,13 +60,13 @@ impl fmt::Display for End {
 }
 
 /// Returns the time within which a client must take a line.
-pub(super) fn write_timeout(interval_s: f64) -> Duration {
+pub(crate) fn write_timeout(interval_s: f64) -> Duration {
     let seconds = WRITE_TIMEOUT_INTERVALS * interval_s;
     Duration::from_secs_f64(seconds.clamp(MIN_WRITE_TIMEOUT_S, MAX_WRITE_TIMEOUT_S))
 }
 
 /// Accepts clients until `shutdown`.
-pub(super) async fn accept(
+pub(crate) async fn accept(
     listener: TcpListener,
     clients: TcpClients,
     shutdown: CancellationToken,

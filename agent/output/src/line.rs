@@ -4,14 +4,16 @@ use crate::config::{Selection, SentenceKind};
 
 /// A sentence with its line end.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Line {
-    pub(crate) kind: SentenceKind,
-    pub(crate) text: Vec<u8>,
+pub struct Line {
+    /// Kind.
+    pub kind: SentenceKind,
+    /// Sentence.
+    pub text: Vec<u8>,
 }
 
 impl Line {
     /// Splits sentences of one kind.
-    pub(crate) fn split(kind: SentenceKind, sentences: &[u8]) -> impl Iterator<Item = Line> {
+    pub fn split(kind: SentenceKind, sentences: &[u8]) -> impl Iterator<Item = Line> {
         sentences
             .split_inclusive(|byte| *byte == b'\n')
             .map(move |text| Line {
@@ -21,13 +23,13 @@ impl Line {
     }
 
     /// Returns whether a newer line of the same kind replaces this one.
-    pub(super) fn is_heading(&self) -> bool {
+    pub(crate) fn is_heading(&self) -> bool {
         !matches!(self.kind, SentenceKind::Alr | SentenceKind::Alf)
     }
 }
 
 /// Returns the lines that a destination takes.
-pub(super) fn select<'a>(
+pub(crate) fn select<'a>(
     lines: &'a [Line],
     selection: &'a Selection,
 ) -> impl Iterator<Item = &'a Line> {

@@ -15,9 +15,8 @@
 //! the compass.
 
 use crate::config::{OutputConfig, SHORTEST_INTERVAL_SHARE, SentenceConfig, SentenceKind};
-use crate::corrected_heading::CorrectedHeading;
-use crate::output::framing::frame_sentence;
-use crate::output::line::Line;
+use crate::framing::frame_sentence;
+use crate::line::Line;
 use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation};
 use binnacle_nmea::sentence::{Hdg, Hdt, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, write};
@@ -33,18 +32,33 @@ const MAX_SLACK: Duration = Duration::from_millis(250);
 /// Intervals of a sentence up to which the compass's own interval sets its time.
 const FOLLOWED_INTERVALS: f64 = 1.25;
 
+/// Corrected heading, as far as it is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Heading {
+    /// Raw reading.
+    pub compass: Option<CompassHeading>,
+    /// Deviation of the model on this heading.
+    pub deviation: Option<Deviation>,
+    /// Variation of the field.
+    pub variation: Option<Variation>,
+    /// Compass heading with both applied; `None` while it is withheld.
+    pub true_heading: Option<TrueHeading>,
+    /// Standard error of the deviation.
+    pub standard_error_deg: Option<f64>,
+}
+
 /// Quality of the model behind a heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Quality {
+pub struct Quality {
     /// Version of the model.
-    pub(crate) version: u32,
+    pub version: u32,
     /// Days since its last sample.
-    pub(crate) age_days: f64,
+    pub age_days: f64,
 }
 
 /// Cause for which a heading may be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Trigger {
+pub enum Trigger {
     /// A new reading of the compass.
     Reading,
     /// The timer of [`HeadingSentences::next_timer`].
@@ -53,7 +67,7 @@ pub(crate) enum Trigger {
 
 /// Sentences that are sent, each at its own interval.
 #[derive(Debug)]
-pub(crate) struct HeadingSentences {
+pub struct HeadingSentences {
     schedules: Vec<Schedule>,
     was_withheld: bool,
 }
@@ -69,7 +83,7 @@ struct Schedule {
 
 impl HeadingSentences {
     /// Creates the configured sentences.
-    pub(crate) fn new(config: &OutputConfig) -> HeadingSentences {
+    pub fn new(config: &OutputConfig) -> HeadingSentences {
         let always = SentenceConfig::ON;
         let own = [
             (SentenceKind::Hdg, config.hdg),
@@ -91,7 +105,7 @@ impl HeadingSentences {
     }
 
     /// Returns the time of the next [`Trigger::Timer`], given the compass's own interval.
-    pub(crate) fn next_timer(&self, compass_interval: Duration, now: Instant) -> Instant {
+    pub fn next_timer(&self, compass_interval: Duration, now: Instant) -> Instant {
         let times = self.schedules.iter();
         let times = times.map(|schedule| schedule.timer(compass_interval).unwrap_or(now));
         times.fold(now + LONGEST_PAUSE, Instant::min)
@@ -99,15 +113,15 @@ impl HeadingSentences {
 
     /// Returns the sentences that are due. A heading that has just been withheld is not valid at
     /// once, whatever the intervals.
-    pub(crate) fn due(
+    pub fn due(
         &mut self,
-        corrected: &CorrectedHeading,
+        heading: &Heading,
         quality: Option<Quality>,
         trigger: Trigger,
         compass_interval: Duration,
         now: Instant,
     ) -> Vec<Line> {
-        let is_withheld = corrected.true_deg.is_none();
+        let is_withheld = heading.true_heading.is_none();
         let at_once = is_withheld && !self.was_withheld;
         self.was_withheld = is_withheld;
         let mut lines = Vec::new();
@@ -116,7 +130,7 @@ impl HeadingSentences {
                 continue;
             }
             schedule.note_due(now);
-            let text = schedule.sentence(corrected, quality);
+            let text = schedule.sentence(heading, quality);
             let kind = schedule.kind;
             lines.extend(text.map(|text| Line { kind, text }));
         }
@@ -159,12 +173,12 @@ impl Schedule {
     }
 
     /// Returns the sentence with its line end; none for an HDT that is withheld.
-    fn sentence(&self, corrected: &CorrectedHeading, quality: Option<Quality>) -> Option<Vec<u8>> {
+    fn sentence(&self, heading: &Heading, quality: Option<Quality>) -> Option<Vec<u8>> {
         let data = match self.kind {
-            SentenceKind::Hdg => hdg(corrected),
-            SentenceKind::Ths => ths(corrected),
-            SentenceKind::Hdt => hdt(corrected)?,
-            _ => return Some(quality_sentence(corrected, quality)),
+            SentenceKind::Hdg => hdg(heading),
+            SentenceKind::Ths => ths(heading),
+            SentenceKind::Hdt => hdt(heading)?,
+            _ => return Some(quality_sentence(heading, quality)),
         };
         let mut text = Vec::with_capacity(40);
         let talker = self.talker;
@@ -173,31 +187,28 @@ impl Schedule {
     }
 }
 
-fn hdg(corrected: &CorrectedHeading) -> Data {
-    let is_withheld = corrected.true_deg.is_none();
+fn hdg(heading: &Heading) -> Data {
+    let is_withheld = heading.true_heading.is_none();
     Data::Hdg(Hdg {
         // Without a deviation, a receiver would take the raw reading for the magnetic heading.
-        reading_deg: corrected
-            .compass_deg
+        reading_deg: heading
+            .compass
             .filter(|_| !is_withheld)
             .map(CompassHeading::degrees)
             .map(tenth),
-        deviation_deg_east: corrected
-            .deviation_deg
+        deviation_deg_east: heading
+            .deviation
             .filter(|_| !is_withheld)
             .map(Deviation::degrees_east)
             .map(tenth),
-        variation_deg_east: corrected
-            .variation_deg
-            .map(Variation::degrees_east)
-            .map(tenth),
+        variation_deg_east: heading.variation.map(Variation::degrees_east).map(tenth),
     })
 }
 
-fn ths(corrected: &CorrectedHeading) -> Data {
+fn ths(heading: &Heading) -> Data {
     Data::Ths(Ths {
-        heading_deg_true: corrected.true_deg.map(TrueHeading::degrees).map(tenth),
-        mode: if corrected.true_deg.is_some() {
+        heading_deg_true: heading.true_heading.map(TrueHeading::degrees).map(tenth),
+        mode: if heading.true_heading.is_some() {
             ThsMode::Estimated
         } else {
             ThsMode::NotValid
@@ -206,13 +217,13 @@ fn ths(corrected: &CorrectedHeading) -> Data {
 }
 
 /// Returns HDT; none while the heading is withheld, for it cannot say so.
-fn hdt(corrected: &CorrectedHeading) -> Option<Data> {
-    let heading_deg_true = Some(tenth(corrected.true_deg?.degrees()));
+fn hdt(heading: &Heading) -> Option<Data> {
+    let heading_deg_true = Some(tenth(heading.true_heading?.degrees()));
     Some(Data::Hdt(Hdt { heading_deg_true }))
 }
 
-fn quality_sentence(corrected: &CorrectedHeading, quality: Option<Quality>) -> Vec<u8> {
-    let status = if corrected.true_deg.is_some() {
+fn quality_sentence(heading: &Heading, quality: Option<Quality>) -> Vec<u8> {
+    let status = if heading.true_heading.is_some() {
         'A'
     } else {
         'V'
@@ -224,7 +235,7 @@ fn quality_sentence(corrected: &CorrectedHeading, quality: Option<Quality>) -> V
         ),
         None => (String::new(), String::new()),
     };
-    let error = corrected
+    let error = heading
         .standard_error_deg
         .map(|error| format!("{error:.2}"))
         .unwrap_or_default();

@@ -1,11 +1,6 @@
 //! Sentences of valid and of withheld headings, their rate, and the age of their readings.
 
 use super::*;
-use crate::corrected_heading::tests::model;
-use crate::corrected_heading::{CorrectionInputs, correct};
-use binnacle_compass::position::Position;
-use binnacle_compass::time::Timestamp;
-use binnacle_wire::messages::CardWithdrawn;
 
 const NO_INTERVAL: Duration = Duration::ZERO;
 
@@ -19,25 +14,22 @@ fn text_of(lines: &[Line]) -> String {
     String::from_utf8(text).unwrap()
 }
 
-fn text(corrected: &CorrectedHeading, quality: Option<Quality>) -> String {
+fn text(corrected: &Heading, quality: Option<Quality>) -> String {
     let now = Instant::now();
     let mut sentences = sentences("");
     text_of(&sentences.due(corrected, quality, Trigger::Timer, NO_INTERVAL, now))
 }
 
-fn corrected(compass: f64, deviation: f64, variation: f64) -> CorrectedHeading {
+fn corrected(compass: f64, deviation: f64, variation: f64) -> Heading {
     let compass = CompassHeading::new(compass).unwrap();
     let deviation = Deviation::new(deviation).unwrap();
     let variation = Variation::new(variation).unwrap();
-    CorrectedHeading {
-        compass_deg: Some(compass),
-        deviation_deg: Some(deviation),
+    Heading {
+        compass: Some(compass),
+        deviation: Some(deviation),
+        variation: Some(variation),
+        true_heading: Some(compass + deviation + variation),
         standard_error_deg: Some(0.25),
-        band95_deg: Some(0.5),
-        variation_deg: Some(variation),
-        magnetic_deg: Some(compass + deviation),
-        true_deg: Some(compass + deviation + variation),
-        problem: None,
     }
 }
 
@@ -66,7 +58,7 @@ fn east_and_west_stand_in_their_places() {
 
 #[test]
 fn what_is_not_known_is_empty_and_not_valid() {
-    let said = text(&CorrectedHeading::default(), None);
+    let said = text(&Heading::default(), None);
     assert!(said.starts_with("$IIHDG,,,,,*"), "{said}");
     assert!(said.contains("$IITHS,,V*"), "{said}");
     assert!(said.contains("$PBINQ,V,,,*"), "{said}");
@@ -85,9 +77,9 @@ fn what_is_written_reads_back() {
 
 #[test]
 fn no_sentence_is_longer_than_its_line_is_reckoned_with() {
-    let longest = CorrectedHeading {
+    let longest = Heading {
         standard_error_deg: Some(179.99),
-        true_deg: TrueHeading::new(359.9),
+        true_heading: TrueHeading::new(359.9),
         ..corrected(359.9, -179.9, -179.9)
     };
     let quality = Some(Quality {
@@ -107,86 +99,19 @@ fn no_sentence_is_longer_than_its_line_is_reckoned_with() {
     }
 }
 
-/// Inputs of a heading that is given, and of one that is withheld for each reason.
-fn with_each_reason(mut each: impl FnMut(&str, CorrectionInputs<'_>)) {
-    let (good, wide) = (model(2_400.0, None), model(0.0, Some(36.0)));
-    let ambiguous = model(1e6, None);
-    let withdrawn = CardWithdrawn {
-        since: Timestamp::parse("2026-11-21T06:00:00Z").unwrap(),
-        reason: "corrector_change".to_owned(),
-    };
-    let given = CorrectionInputs {
-        compass: CompassHeading::new(77.7),
-        position: Position::new(43.3, -3.0).ok(),
-        time: Timestamp::parse("2026-11-21T07:00:00Z").ok(),
-        model: Some(&good),
-        ..CorrectionInputs::default()
-    };
-    each("", given);
-    let compass = None;
-    each("silent", CorrectionInputs { compass, ..given });
-    let compass_is_mixed = true;
-    each(
-        "two sensors",
-        CorrectionInputs {
-            compass_is_mixed,
-            ..given
-        },
-    );
-    let position = None;
-    each("position", CorrectionInputs { position, ..given });
-    let position = Position::new(-64.0, 136.0).ok();
-    each("too weak", CorrectionInputs { position, ..given });
-    let time = None;
-    each("time", CorrectionInputs { time, ..given });
-    let model = None;
-    each("no model", CorrectionInputs { model, ..given });
-    let model = Some(&wide);
-    each("known only to", CorrectionInputs { model, ..given });
-    let model = Some(&ambiguous);
-    each("", CorrectionInputs { model, ..given });
-    let withdrawn = Some(&withdrawn);
-    each("has not held", CorrectionInputs { withdrawn, ..given });
-    let compass_suspected = true;
-    each(
-        "suspects",
-        CorrectionInputs {
-            compass_suspected,
-            ..given
-        },
-    );
-}
-
 #[test]
-fn while_a_heading_is_withheld_for_whatever_reason_nothing_can_be_read_as_one() {
-    let mut given = 0;
-    with_each_reason(|reason, inputs| {
-        let corrected = correct(inputs);
-        let mut sentences = sentences("hdt = true");
-        let now = Instant::now();
-        let lines = sentences.due(&corrected, None, Trigger::Timer, NO_INTERVAL, now);
-        let said = text_of(&lines);
-        if corrected.true_deg.is_some() {
-            given += 1;
-            assert_eq!(lines.len(), 4, "{said}");
-            return;
-        }
-        let problem = corrected.problem.unwrap();
-        assert!(problem.contains(reason), "{problem}");
-        assert_eq!(lines.len(), 3, "{problem}: {said}");
-        for line in lines {
-            match binnacle_nmea::parse(&line.text).map(|read| read.data) {
-                Ok(Data::Hdg(hdg)) => {
-                    assert_eq!((hdg.reading_deg, hdg.deviation_deg_east), (None, None));
-                }
-                Ok(Data::Ths(ths)) => {
-                    assert_eq!((ths.heading_deg_true, ths.mode), (None, ThsMode::NotValid));
-                }
-                _ => assert!(line.text.starts_with(b"$PBINQ,V,"), "{said}"),
-            }
-        }
-    });
-    assert_eq!(given, 1);
+fn while_a_heading_is_withheld_nothing_can_be_read_as_one() {
+    let withheld = Heading {
+        true_heading: None,
+        ..corrected(90.0, 2.0, 4.0)
+    };
+    let mut sentences = sentences("hdt = true");
+    let now = Instant::now();
+    let lines = sentences.due(&withheld, None, Trigger::Timer, NO_INTERVAL, now);
+    let said = text_of(&lines);
+    assert!(said.starts_with("$IIHDG,,,,4.0,E*"), "{said}");
+    assert!(said.contains("$IITHS,,V*"), "{said}");
+    assert!(!said.contains("HDT") && !said.contains("90"), "{said}");
 }
 
 #[test]
@@ -199,7 +124,7 @@ hdt = { talker = "HE", interval_s = 0.2 }
     let mut sentences = sentences(config);
     let valid = corrected(90.0, 2.0, 4.0);
     let start = Instant::now();
-    let mut count = |ms, heading: &CorrectedHeading| {
+    let mut count = |ms, heading: &Heading| {
         let now = start + Duration::from_millis(ms);
         let lines = sentences.due(heading, None, Trigger::Timer, NO_INTERVAL, now);
         let said = text_of(&lines);
@@ -210,7 +135,7 @@ hdt = { talker = "HE", interval_s = 0.2 }
     assert_eq!(count(205, &valid), [0, 0, 1, 0]);
     assert_eq!(count(405, &valid), [0, 0, 1, 0]);
     assert_eq!(count(1_000, &valid), [0, 0, 1, 1]);
-    let withheld = CorrectedHeading::default();
+    let withheld = Heading::default();
     assert_eq!(count(1_100, &withheld), [0, 1, 0, 1]);
     assert_eq!(count(1_300, &withheld), [0, 0, 0, 0]);
     // Given again, it takes no longer than its interval.

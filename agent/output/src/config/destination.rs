@@ -3,8 +3,7 @@
 //! Each is one value or a list of them. An address alone takes all sentences; a table may select
 //! some with `sentences`.
 
-use super::input::Group;
-use super::output::SentenceKind;
+use super::sentence::SentenceKind;
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{DeserializeOwned, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -19,9 +18,11 @@ const STANDARD_BAUD: u32 = 4800;
 /// Address to listen on or to send to.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(from = "TextOrTable<SocketAddr, AddressTable>")]
-pub(crate) struct AddressConfig {
-    pub(crate) address: SocketAddr,
-    pub(crate) sentences: Selection,
+pub struct AddressConfig {
+    /// Address and port.
+    pub address: SocketAddr,
+    /// Sentences that it takes.
+    pub sentences: Selection,
 }
 
 #[derive(Deserialize)]
@@ -56,13 +57,17 @@ impl From<TextOrTable<SocketAddr, AddressTable>> for AddressConfig {
 /// Transmission group of IEC 61162-450.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(try_from = "TextOrTable<SocketAddrV4, MulticastTable>")]
-pub(crate) struct MulticastConfig {
-    pub(crate) group: Group,
+pub struct MulticastConfig {
+    /// Address and port; IEC 61162-450 has 239.192.0.1 to 64, ports 60001 to 60009.
+    pub group: SocketAddrV4,
+    /// Address of the interface; unspecified lets the system choose.
+    pub interface: Ipv4Addr,
     /// System function that the agent sends as; the talker and 0001 if it is not set.
-    pub(crate) sfi: Option<Sfi>,
+    pub sfi: Option<Sfi>,
     /// System function that the sentences are for.
-    pub(crate) destination: Option<Sfi>,
-    pub(crate) sentences: Selection,
+    pub destination: Option<Sfi>,
+    /// Sentences that it takes.
+    pub sentences: Selection,
 }
 
 #[derive(Deserialize)]
@@ -90,9 +95,13 @@ impl TryFrom<TextOrTable<SocketAddrV4, MulticastTable>> for MulticastConfig {
                 sentences: Selection::default(),
             },
         };
-        let interface = table.interface.unwrap_or(Ipv4Addr::UNSPECIFIED);
+        let group = table.group;
+        if !group.ip().is_multicast() {
+            return Err(format!("{group} is not a multicast address"));
+        }
         Ok(MulticastConfig {
-            group: Group::new(table.group, interface)?,
+            group,
+            interface: table.interface.unwrap_or(Ipv4Addr::UNSPECIFIED),
             sfi: table.sfi,
             destination: table.destination,
             sentences: table.sentences,
@@ -103,16 +112,16 @@ impl TryFrom<TextOrTable<SocketAddrV4, MulticastTable>> for MulticastConfig {
 /// System function identifier: two letters or digits, and four digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
-pub(crate) struct Sfi([u8; 6]);
+pub struct Sfi([u8; 6]);
 
 impl Sfi {
     /// Returns the first system function of a talker.
-    pub(crate) fn first_of([first, second]: [u8; 2]) -> Sfi {
+    pub fn first_of([first, second]: [u8; 2]) -> Sfi {
         Sfi([first, second, b'0', b'0', b'0', b'1'])
     }
 
     /// Returns the text.
-    pub(crate) fn bytes(&self) -> &[u8] {
+    pub fn bytes(&self) -> &[u8] {
         &self.0
     }
 }
@@ -136,51 +145,37 @@ impl TryFrom<String> for Sfi {
 /// Serial port to write to.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct SerialOutputConfig {
+pub struct SerialOutputConfig {
     /// Device, as `/dev/ttyUSB0`.
     pub(super) path: Spanned<String>,
     pub(super) baud: Option<Spanned<u32>>,
+    /// Sentences that it takes.
     #[serde(default)]
-    pub(crate) sentences: Selection,
+    pub sentences: Selection,
 }
 
 impl SerialOutputConfig {
     /// Returns the device.
-    pub(crate) fn path(&self) -> &str {
+    pub fn path(&self) -> &str {
         self.path.get_ref()
     }
 
     /// Returns the bits per second.
-    pub(crate) fn baud(&self) -> u32 {
+    pub fn baud(&self) -> u32 {
         self.baud
             .as_ref()
             .map_or(STANDARD_BAUD, |baud| *baud.get_ref())
     }
 }
 
-/// Serial port to read.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct SerialConfig {
-    /// Device, as `/dev/ttyUSB0`.
-    pub(crate) path: String,
-    /// Bits per second.
-    #[serde(default = "standard_baud")]
-    pub(crate) baud: u32,
-}
-
-fn standard_baud() -> u32 {
-    STANDARD_BAUD
-}
-
 /// Sentences that a destination takes: all that are sent unless some are named.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(try_from = "Vec<Spanned<SentenceKind>>")]
-pub(crate) struct Selection(Option<Vec<Spanned<SentenceKind>>>);
+pub struct Selection(Option<Vec<Spanned<SentenceKind>>>);
 
 impl Selection {
     /// Returns whether the destination takes a sentence.
-    pub(crate) fn includes(&self, kind: SentenceKind) -> bool {
+    pub fn includes(&self, kind: SentenceKind) -> bool {
         let named = self.0.as_ref();
         named.is_none_or(|named| named.iter().any(|one| *one.get_ref() == kind))
     }

@@ -2,12 +2,12 @@
 //!
 //! No receiver can block the agent, and none gets an old heading after a new one.
 
-use super::datagrams::Datagrams;
-use super::line::{Line, select};
-use super::serial_line::write_serial;
-use super::tcp_clients::{TcpClients, accept, write_timeout};
 use crate::config::{OutputConfig, Selection};
-use anyhow::Context;
+use crate::datagrams::Datagrams;
+use crate::line::{Line, select};
+use crate::open_error::OpenError;
+use crate::serial_line::write_serial;
+use crate::tcp_clients::{TcpClients, accept, write_timeout};
 use binnacle_nmea::sentence::Acn;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -20,11 +20,11 @@ const MAX_LAG: usize = 16;
 
 /// Open outputs.
 #[derive(Debug)]
-pub(crate) struct Outputs {
+pub struct Outputs {
     streams: Vec<Stream>,
     datagrams: Vec<Datagrams>,
     /// Address of the first TCP server.
-    pub(crate) tcp_address: Option<SocketAddr>,
+    pub tcp_address: Option<SocketAddr>,
 }
 
 /// TCP server or serial port.
@@ -37,11 +37,14 @@ struct Stream {
 impl Outputs {
     /// Opens the configured outputs, which run until `shutdown`, and passes on the commands that
     /// their receivers send.
-    pub(crate) async fn open(
+    ///
+    /// # Errors
+    /// An address that cannot be listened on, or sent to.
+    pub async fn open(
         config: &OutputConfig,
         commands: &mpsc::Sender<Acn>,
         shutdown: &CancellationToken,
-    ) -> anyhow::Result<Outputs> {
+    ) -> Result<Outputs, OpenError> {
         let mut outputs = Outputs {
             streams: Vec::new(),
             datagrams: Vec::new(),
@@ -49,14 +52,18 @@ impl Outputs {
         };
         for server in &config.tcp_server {
             let address = server.address;
-            let listener = TcpListener::bind(address)
-                .await
-                .with_context(|| format!("output.tcp_server {address}: cannot listen"))?;
-            outputs.tcp_address.get_or_insert(listener.local_addr()?);
+            let refused = |source| OpenError {
+                field: "tcp_server",
+                address,
+                source,
+            };
+            let listener = TcpListener::bind(address).await.map_err(refused)?;
+            let bound = listener.local_addr().map_err(refused)?;
+            outputs.tcp_address.get_or_insert(bound);
             let clients = TcpClients {
                 lines: outputs.add_stream(&server.sentences),
                 commands: commands.clone(),
-                write_timeout: write_timeout(config.interval_s.0),
+                write_timeout: write_timeout(config.interval_s.seconds()),
             };
             tokio::spawn(accept(listener, clients, shutdown.clone()));
         }
@@ -85,7 +92,7 @@ impl Outputs {
     }
 
     /// Sends to all receivers without waiting.
-    pub(crate) fn send(&mut self, lines: &[Line]) {
+    pub fn send(&mut self, lines: &[Line]) {
         for output in &mut self.datagrams {
             output.send(lines);
         }
@@ -113,7 +120,7 @@ mod tests {
         _shutdown: CancellationToken,
     }
 
-    async fn open(toml: &str) -> anyhow::Result<Opened> {
+    async fn open(toml: &str) -> Result<Opened, OpenError> {
         let config: OutputConfig = toml::from_str(toml).unwrap();
         let (commands, taken) = mpsc::channel(1);
         let shutdown = CancellationToken::new();

@@ -1,44 +1,59 @@
-//! `[output]`: destinations of the corrected heading, and its sentences.
+//! `[output]`: destinations of the corrected heading and the alerts, and their sentences.
 
-use super::destination::{
-    AddressConfig, MulticastConfig, Selection, SerialOutputConfig, one_or_more,
-};
-use super::error::Problem;
-use super::limits::PositiveSeconds;
-use super::roles::two_capitals;
-use serde::{Deserialize, Deserializer};
+mod destination;
+mod line_load;
+mod sentence;
+
+pub use destination::{AddressConfig, MulticastConfig, Selection, SerialOutputConfig, Sfi};
+pub use sentence::{Interval, SentenceConfig, SentenceKind};
+
+pub(crate) use line_load::SHORTEST_INTERVAL_SHARE;
+
+use destination::one_or_more;
+use sentence::talker;
+use serde::Deserialize;
+use std::ops::Range;
+
+/// Reason why a configuration cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ConfigProblem {
+    /// Bytes of the value in the text.
+    pub span: Range<usize>,
+    /// Description of the mistake.
+    pub problem: String,
+}
 
 /// Destinations of the corrected heading.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct OutputConfig {
+pub struct OutputConfig {
     /// Addresses of TCP servers that send to every client.
     #[serde(deserialize_with = "one_or_more")]
-    pub(crate) tcp_server: Vec<AddressConfig>,
+    pub tcp_server: Vec<AddressConfig>,
     /// Destinations of datagrams; may be broadcast addresses.
     #[serde(deserialize_with = "one_or_more")]
-    pub(crate) udp: Vec<AddressConfig>,
+    pub udp: Vec<AddressConfig>,
     /// Groups of IEC 61162-450 to send to.
     #[serde(deserialize_with = "one_or_more")]
-    pub(crate) multicast: Vec<MulticastConfig>,
+    pub multicast: Vec<MulticastConfig>,
     /// Serial ports to write to.
     #[serde(deserialize_with = "one_or_more")]
-    pub(crate) serial: Vec<SerialOutputConfig>,
+    pub serial: Vec<SerialOutputConfig>,
     /// Seconds between two outputs.
-    pub(crate) interval_s: PositiveSeconds,
+    pub interval_s: Interval,
     /// Talker of all sentences.
-    #[serde(deserialize_with = "two_capitals")]
-    pub(crate) talker: [u8; 2],
+    #[serde(deserialize_with = "talker")]
+    pub talker: [u8; 2],
     /// Raw heading with deviation and variation.
-    pub(crate) hdg: SentenceConfig,
+    pub hdg: SentenceConfig,
     /// True heading with its mode.
-    pub(crate) ths: SentenceConfig,
+    pub ths: SentenceConfig,
     /// True heading without a mode.
-    pub(crate) hdt: SentenceConfig,
+    pub hdt: SentenceConfig,
     /// Sends ALR sentences of the agent's own alert as well.
-    pub(crate) alarm_sentence: bool,
+    pub alarm_sentence: bool,
     /// Sends ALF, ALC, ARC and HBT of the agent's alerts, and takes ACN commands to them.
-    pub(crate) alert_sentences: bool,
+    pub alert_sentences: bool,
 }
 
 impl Default for OutputConfig {
@@ -48,7 +63,7 @@ impl Default for OutputConfig {
             udp: Vec::new(),
             multicast: Vec::new(),
             serial: Vec::new(),
-            interval_s: PositiveSeconds(1.0),
+            interval_s: Interval(1.0),
             talker: *b"II",
             hdg: SentenceConfig::ON,
             ths: SentenceConfig::ON,
@@ -61,7 +76,7 @@ impl Default for OutputConfig {
 
 impl OutputConfig {
     /// Returns talker and sentence of each heading that is sent.
-    pub(crate) fn headings(&self) -> Vec<([u8; 2], [u8; 3])> {
+    pub fn headings(&self) -> Vec<([u8; 2], [u8; 3])> {
         let own = [
             (self.hdg, *b"HDG"),
             (self.ths, *b"THS"),
@@ -73,12 +88,12 @@ impl OutputConfig {
     }
 
     /// Returns the seconds between two sentences of a kind.
-    pub(crate) fn interval_s(&self, sentence: SentenceConfig) -> f64 {
+    pub fn interval_s(&self, sentence: SentenceConfig) -> f64 {
         sentence.interval_s.unwrap_or(self.interval_s).0
     }
 
     /// Returns whether a sentence is sent at all.
-    pub(super) fn is_sent(&self, kind: SentenceKind) -> bool {
+    fn is_sent(&self, kind: SentenceKind) -> bool {
         match kind {
             SentenceKind::Hdg => self.hdg.is_on,
             SentenceKind::Ths => self.ths.is_on,
@@ -91,12 +106,15 @@ impl OutputConfig {
 
     /// Refuses destinations that select a sentence which is never sent, and serial lines that
     /// cannot carry their sentences.
-    pub(super) fn check(&self) -> Result<(), Problem> {
+    ///
+    /// # Errors
+    /// The value that is wrong, and why.
+    pub fn check(&self) -> Result<(), ConfigProblem> {
         for selected in self.selections().flat_map(Selection::named) {
             let kind = *selected.get_ref();
             if !self.is_sent(kind) {
-                return Err(Problem {
-                    span: Some(selected.span()),
+                return Err(ConfigProblem {
+                    span: selected.span(),
                     problem: format!("{} is not switched on in [output]", kind.name()),
                 });
             }
@@ -111,102 +129,6 @@ impl OutputConfig {
         let lines = self.serial.iter().map(|line| &line.sentences);
         addresses.chain(groups).chain(lines)
     }
-}
-
-/// Sentences that a destination can select.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "UPPERCASE")]
-pub(crate) enum SentenceKind {
-    Hdg,
-    Ths,
-    Hdt,
-    /// Quality of the heading.
-    Pbinq,
-    /// Alarm for an alarm panel.
-    Alr,
-    /// Alerts for bridge alert management: ALF, ALC, ARC and HBT.
-    Alf,
-}
-
-impl SentenceKind {
-    pub(super) const ALL: [SentenceKind; 6] = [
-        SentenceKind::Hdg,
-        SentenceKind::Ths,
-        SentenceKind::Hdt,
-        SentenceKind::Pbinq,
-        SentenceKind::Alr,
-        SentenceKind::Alf,
-    ];
-
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            SentenceKind::Hdg => "HDG",
-            SentenceKind::Ths => "THS",
-            SentenceKind::Hdt => "HDT",
-            SentenceKind::Pbinq => "PBINQ",
-            SentenceKind::Alr => "ALR",
-            SentenceKind::Alf => "ALF",
-        }
-    }
-}
-
-/// One sentence: off, on, or with its own talker and interval.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-#[serde(from = "SentenceForm")]
-pub(crate) struct SentenceConfig {
-    pub(crate) is_on: bool,
-    pub(crate) talker: Option<[u8; 2]>,
-    pub(crate) interval_s: Option<PositiveSeconds>,
-}
-
-impl SentenceConfig {
-    const OFF: SentenceConfig = SentenceConfig {
-        is_on: false,
-        talker: None,
-        interval_s: None,
-    };
-    pub(crate) const ON: SentenceConfig = SentenceConfig {
-        is_on: true,
-        ..SentenceConfig::OFF
-    };
-}
-
-#[derive(Deserialize)]
-#[serde(
-    untagged,
-    expecting = "expected true, false or { talker = \"HC\", interval_s = 0.2 }"
-)]
-enum SentenceForm {
-    Switch(bool),
-    Table(SentenceTable),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SentenceTable {
-    #[serde(default, deserialize_with = "some_two_capitals")]
-    talker: Option<[u8; 2]>,
-    interval_s: Option<PositiveSeconds>,
-}
-
-impl From<SentenceForm> for SentenceConfig {
-    fn from(form: SentenceForm) -> SentenceConfig {
-        match form {
-            SentenceForm::Switch(is_on) => SentenceConfig {
-                is_on,
-                ..SentenceConfig::OFF
-            },
-            SentenceForm::Table(table) => SentenceConfig {
-                is_on: true,
-                talker: table.talker,
-                interval_s: table.interval_s,
-            },
-        }
-    }
-}
-
-fn some_two_capitals<'de, D: Deserializer<'de>>(d: D) -> Result<Option<[u8; 2]>, D::Error> {
-    two_capitals(d).map(Some)
 }
 
 #[cfg(test)]
@@ -248,7 +170,7 @@ tcp_server = { address = "127.0.0.1:0", sentences = ["PBINQ"] }
         assert!(!hdg(&output.tcp_server[0].sentences));
         let unsent = output.check().err().unwrap();
         assert_eq!(unsent.problem, "ALR is not switched on in [output]");
-        assert_eq!(&text[unsent.span.unwrap()], "\"ALR\"");
+        assert_eq!(&text[unsent.span], "\"ALR\"");
         let none = read("udp = { address = \"10.0.0.2:2\", sentences = [] }");
         assert!(none.unwrap_err().contains("sends nothing"));
         let unknown = read("udp = { address = \"10.0.0.2:2\", sentences = [\"HDM\"] }");
@@ -259,13 +181,13 @@ tcp_server = { address = "127.0.0.1:0", sentences = ["PBINQ"] }
     fn a_multicast_group_has_a_source_and_perhaps_a_destination() {
         let short = read("multicast = \"239.192.0.4:60004\"").unwrap();
         let group = &short.multicast[0];
-        assert_eq!(group.group.address.port(), 60004);
+        assert_eq!(group.group.port(), 60004);
         assert!(group.sfi.is_none() && group.destination.is_none());
         let long = "multicast = { group = \"239.192.0.4:60004\", interface = \"10.0.0.1\", \
                     sfi = \"HC0012\", destination = \"EI0001\" }";
         let long = read(long).unwrap();
         let group = &long.multicast[0];
-        assert_eq!(group.group.interface.to_string(), "10.0.0.1");
+        assert_eq!(group.interface.to_string(), "10.0.0.1");
         assert_eq!(group.sfi.unwrap().bytes(), b"HC0012");
         assert_eq!(group.destination.unwrap().bytes(), b"EI0001");
         for (wrong, named) in [
