@@ -23,7 +23,14 @@ impl Agent {
         }
     }
 
-    fn comparison(&self, now: Instant) -> Option<Comparison> {
+    fn comparison(&mut self, now: Instant) -> Option<Comparison> {
+        let corrected = self.with_correction_inputs(|inputs| {
+            correct(CorrectionInputs {
+                // Compared even while an alert suspects the compass: it must not end the alarm.
+                compass_suspected: false,
+                ..inputs
+            })
+        });
         let readings = &self.acquisition.readings;
         let stale = self.silence.stale_s.duration();
         let gyro = Latest::within(readings.gyro, stale, now);
@@ -32,13 +39,6 @@ impl Agent {
             (Some(heading), _) => (heading, DifferenceReference::Gyro),
             (None, heading) => (heading?, DifferenceReference::SatelliteCompass),
         };
-        let corrected = self.with_correction_inputs(|inputs| {
-            correct(CorrectionInputs {
-                // Compared even while an alert suspects the compass: it must not end the alarm.
-                compass_suspected: false,
-                ..inputs
-            })
-        });
         Some(Comparison {
             corrected: corrected.true_deg?,
             reference_heading,

@@ -161,6 +161,7 @@ mod tests {
     use super::*;
     use crate::corrected_heading::correct;
     use crate::corrected_heading::tests::model;
+    use crate::instruments::ReckonedPlace;
     use binnacle_compass::angle::CompassHeading;
     use binnacle_compass::position::Position;
     use binnacle_compass::time::Timestamp;
@@ -168,6 +169,11 @@ mod tests {
     use binnacle_nmea::sentence::ThsMode;
     use binnacle_output::HeadingSentences;
     use std::time::Duration;
+
+    fn at(lat_deg: f64, lon_deg: f64) -> Option<ReckonedPlace> {
+        let position = Position::new(lat_deg, lon_deg).ok();
+        position.map(ReckonedPlace::exactly)
+    }
 
     /// Inputs of a heading that is given, and of one that is withheld for each reason.
     fn with_each_reason(mut each: impl FnMut(&str, CorrectionInputs<'_>)) {
@@ -179,7 +185,7 @@ mod tests {
         };
         let given = CorrectionInputs {
             compass: CompassHeading::new(77.7),
-            position: Position::new(43.3, -3.0).ok(),
+            place: at(43.3, -3.0),
             time: Timestamp::parse("2026-11-21T07:00:00Z").ok(),
             model: Some(&good),
             ..CorrectionInputs::default()
@@ -195,10 +201,10 @@ mod tests {
                 ..given
             },
         );
-        let position = None;
-        each("position", CorrectionInputs { position, ..given });
-        let position = Position::new(-64.0, 136.0).ok();
-        each("too weak", CorrectionInputs { position, ..given });
+        let place = None;
+        each("position", CorrectionInputs { place, ..given });
+        let place = at(-64.0, 136.0);
+        each("too weak", CorrectionInputs { place, ..given });
         let time = None;
         each("time", CorrectionInputs { time, ..given });
         let model = None;
