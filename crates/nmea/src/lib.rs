@@ -27,6 +27,7 @@ pub mod alert;
 pub mod datagram;
 pub mod lines;
 pub mod n2k;
+pub mod recording;
 pub mod rejected;
 pub mod sentence;
 pub mod tag;

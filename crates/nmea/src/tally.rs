@@ -19,6 +19,15 @@ impl Tally {
     /// lost, or noise came between. That sentence is read too, and both are
     /// counted.
     pub fn read<'a>(&mut self, line: &'a [u8]) -> Option<Tagged<'a>> {
+        self.read_noting(line, |_| {})
+    }
+
+    /// Reads a line like [`Tally::read`], and hands each refusal to `note` too.
+    pub fn read_noting<'a>(
+        &mut self,
+        line: &'a [u8],
+        mut note: impl FnMut(Rejected),
+    ) -> Option<Tagged<'a>> {
         let mut rest = line;
         loop {
             let rejected = match parse_tagged(rest) {
@@ -29,6 +38,7 @@ impl Tally {
                 Err(rejected) => rejected,
             };
             self.reject(rejected);
+            note(rejected);
             rest = next_start(rest)?;
         }
     }
