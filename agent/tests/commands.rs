@@ -8,7 +8,7 @@ use common::agent::{Agent, command};
 use common::bridge::{self, Bridge};
 use common::fetch;
 use common::server::TestServer;
-use serde_json::Value;
+use serde_json::{Value, json};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{Connection, SqliteConnection};
 use std::fmt::Write;
@@ -63,6 +63,7 @@ async fn a_recording_becomes_a_table_and_a_tally() {
     let tally: Value = serde_json::from_slice(&done.stderr).unwrap();
     assert_eq!(tally["samples"], rows.count() + 1);
     assert_eq!(tally["sentences"]["RMC"], 7200);
+    assert_eq!(tally["notes"], json!([]));
     assert!(tally["windows"]["accepted"].as_u64() > Some(600));
     assert!(tally["windows"]["settling"].as_u64() > Some(30));
 
@@ -90,6 +91,11 @@ async fn a_recording_without_receivers_runs_by_its_own_times() {
     let done = command().arg("replay").arg(&log).output().await.unwrap();
     let tally: Value = serde_json::from_slice(&done.stderr).unwrap();
     assert_eq!(tally["windows"]["no_position"], 119);
+    assert_eq!(done.status.code(), Some(0));
+    let said = text(&done.stderr);
+    for words in ["no position in the recording (RMC, GGA, GLL)", "no samples"] {
+        assert!(said.contains(words), "{said}");
+    }
 }
 
 #[tokio::test]

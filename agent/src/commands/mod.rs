@@ -20,7 +20,7 @@ use configuration::load;
 use discover::discover;
 use enrolment::{enrol, rotate_token};
 use local_agent::{set_exclusion, status};
-use recordings::{export, parse_time, replay};
+use recordings::{Options, export, parse_time, replay};
 use signals::stop_on_signals;
 use std::io::Write;
 use std::path::PathBuf;
@@ -115,11 +115,11 @@ enum Command {
         #[arg(long)]
         csv: Option<PathBuf>,
     },
-    /// Replays recorded sentences through the same sampler: samples as CSV, a tally as JSON on
+    /// Replays recordings through the same sampler: samples as CSV, notes and a tally as JSON on
     /// standard error.
     Replay {
-        /// Recordings in order of time: plain sentences, lines of an RFC 3339 time and a sentence,
-        /// or TAG blocks with times.
+        /// Recordings in any order, compressed by gzip or not: lines with a sentence or a Signal K
+        /// delta, with or without a time and a device's name before it.
         #[arg(required = true)]
         files: Vec<PathBuf>,
         /// Configuration with `[roles]` and `[silence]`; conventional talkers without it.
@@ -128,6 +128,9 @@ enum Command {
         /// File for the samples, instead of standard output.
         #[arg(long)]
         csv: Option<PathBuf>,
+        /// Times that the receiver's week count has rolled over: each adds 1024 weeks to its dates.
+        #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=2))]
+        roll_over: u8,
     },
 }
 
@@ -221,8 +224,18 @@ fn execute(command: Command) -> anyhow::Result<()> {
                 };
                 tokio::task::block_in_place(|| export(&load(&config)?, span, csv.as_deref()))
             }
-            Command::Replay { files, config, csv } => {
-                tokio::task::block_in_place(|| replay(&files, config.as_deref(), csv.as_deref()))
+            Command::Replay {
+                files,
+                config,
+                csv,
+                roll_over,
+            } => {
+                let options = Options {
+                    config: config.as_deref(),
+                    csv: csv.as_deref(),
+                    roll_overs: roll_over,
+                };
+                tokio::task::block_in_place(|| replay(&files, options))
             }
         }
     });

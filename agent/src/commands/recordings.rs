@@ -3,9 +3,10 @@
 use super::bad_input::BadInput;
 use super::configuration::load;
 use crate::atomic_file::write_atomically;
+use crate::clock;
 use crate::config::{Config, RolesConfig, SilenceConfig};
 use crate::raw_log::{self, Span};
-use crate::replay;
+use crate::replay::{self, Recordings};
 use binnacle_compass::time::Timestamp;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -29,22 +30,33 @@ pub(super) fn export(config: &Config, span: Span, csv: Option<&Path>) -> anyhow:
     Ok(())
 }
 
-pub(super) fn replay(
-    files: &[PathBuf],
-    config: Option<&Path>,
-    csv: Option<&Path>,
-) -> anyhow::Result<()> {
-    let (roles, silence) = match config {
+/// Options of `replay`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Options<'a> {
+    pub(super) config: Option<&'a Path>,
+    pub(super) csv: Option<&'a Path>,
+    /// Cycles of 1,024 weeks that are added to the dates of receivers.
+    pub(super) roll_overs: u8,
+}
+
+pub(super) fn replay(files: &[PathBuf], options: Options<'_>) -> anyhow::Result<()> {
+    let (roles, silence) = match options.config {
         Some(path) => {
             let config = load(path)?;
             (config.roles, config.silence)
         }
         None => (RolesConfig::usual(), SilenceConfig::default()),
     };
-    let replayed =
-        replay::replay(files, &roles, &silence).map_err(|e| BadInput(format!("{e:#}")))?;
+    let recordings = Recordings {
+        files,
+        roles: &roles,
+        silence: &silence,
+        roll_overs: options.roll_overs.into(),
+        now: clock::now(),
+    };
+    let replayed = replay::replay(&recordings).map_err(|e| BadInput(format!("{e:#}")))?;
     let table = replayed.csv()?;
-    match csv {
+    match options.csv {
         Some(path) => {
             write_atomically(path, |out| Ok(out.write_all(&table)?))
                 .map_err(|e| BadInput(format!("{e:#}")))?;

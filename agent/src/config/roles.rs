@@ -158,23 +158,27 @@ impl RolesConfig {
         }
     }
 
-    /// Returns the conventional talkers of each role.
+    /// Returns the conventional talkers of each role. `SK` is Signal K, whose HDG is
+    /// `navigation.headingCompass`: the raw reading.
     pub(crate) fn usual() -> RolesConfig {
         let source = SourceConfig::usual;
+        let of_any = |sentence| source(None, sentence);
+        let of = |talkers: &[&[u8; 2]], sentence| {
+            let talkers = talkers.iter().map(|talker| **talker);
+            talkers
+                .map(|talker| source(Some(talker), sentence))
+                .collect::<Vec<_>>()
+        };
+        let satellite: [&[u8; 2]; 3] = [b"GP", b"GN", b"IN"];
         RolesConfig {
-            compass: vec![source(Some(*b"HC"), *b"HDG")],
-            gyro: vec![source(Some(*b"HE"), *b"THS"), source(Some(*b"HE"), *b"HDT")],
-            satellite: vec![
-                source(Some(*b"GP"), *b"THS"),
-                source(Some(*b"GN"), *b"THS"),
-                source(Some(*b"GP"), *b"HDT"),
-                source(Some(*b"GN"), *b"HDT"),
-            ],
-            position: vec![source(None, *b"RMC")],
-            rate_of_turn: vec![source(None, *b"ROT")],
-            log: vec![source(None, *b"VHW")],
-            roll: vec![source(None, *b"XDR")],
-            temperature: vec![source(None, *b"MTA"), source(None, *b"XDR")],
+            compass: of(&[b"HC", b"SK"], *b"HDG"),
+            gyro: [of(&[b"HE"], *b"THS"), of(&[b"HE", b"SK"], *b"HDT")].concat(),
+            satellite: [of(&satellite, *b"THS"), of(&satellite, *b"HDT")].concat(),
+            position: vec![of_any(*b"RMC"), of_any(*b"GGA"), of_any(*b"GLL")],
+            rate_of_turn: vec![of_any(*b"ROT")],
+            log: vec![of_any(*b"VHW")],
+            roll: vec![of_any(*b"XDR")],
+            temperature: vec![of_any(*b"MTA"), of_any(*b"XDR")],
         }
     }
 }

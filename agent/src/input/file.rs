@@ -1,41 +1,36 @@
-//! Recorded sentences from a file.
+//! Recorded lines from a file.
 
-use super::decode::{Decoder, Source};
 use super::link::{End, Link};
-use super::pump::pump;
+use super::recording::{RecordingReader, Survey};
 use crate::instruments::Observation;
-use binnacle_nmea::Tally;
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
 
-const CHUNK_BYTES: usize = 64 * 1024;
-
 pub(super) async fn session(path: &Path, link: &Link) -> io::Result<End> {
-    let file = tokio::fs::File::open(path).await?;
+    let (path, input) = (path.to_owned(), link.name.clone());
+    let opened = tokio::task::spawn_blocking(move || {
+        let plan = Survey::of(&path, None)?.plan();
+        RecordingReader::open(&path, input, plan)
+    });
+    let mut reader = opened.await.map_err(io::Error::other)??;
     link.opened();
-    pump(file, Source::Recording, link).await?;
-    Ok(End::Finished)
-}
-
-/// Reads a whole recording and passes its observations to `each` in the order of its lines. The
-/// recording's own times are observations for which [`crate::instruments::is_recorded_time`] holds.
-///
-/// # Errors
-/// Fails when the file cannot be read.
-pub(crate) fn replay(path: &Path, mut each: impl FnMut(&[Observation])) -> io::Result<Tally> {
-    let mut file = File::open(path)?;
-    let mut decoder = Decoder::new("replay".into(), Source::Recording);
-    let mut buffer = vec![0; CHUNK_BYTES];
     loop {
-        let count = file.read(&mut buffer)?;
-        if count == 0 {
+        let read = tokio::task::spawn_blocking(move || (reader.next_chunk(), reader));
+        let (chunk, returned) = read.await.map_err(io::Error::other)?;
+        reader = returned;
+        let Some(chunk) = chunk else {
             break;
-        }
-        decoder.chunk(&buffer[..count]);
-        each(&decoder.take_observations());
+        };
+        let decoder = reader.decoder();
+        link.stats
+            .count_received(chunk.bytes, &decoder.take_tally());
+        link.stats.count_values(&decoder.take_values());
+        let observations: Vec<Observation> = chunk
+            .recorded
+            .into_iter()
+            .map(|recorded| recorded.seen)
+            .collect();
+        link.deliver(observations).await?;
     }
-    decoder.finish();
-    each(&decoder.take_observations());
-    Ok(decoder.take_tally())
+    Ok(End::Finished)
 }

@@ -8,12 +8,15 @@
 //! - Every line that is not used is counted by reason.
 
 mod decode;
+mod delta_counts;
 mod link;
 mod pump;
 mod readings;
 mod signalk_delta;
 mod signalk_value;
 mod stats;
+
+pub(crate) mod recording;
 
 mod file;
 mod serial;
@@ -24,7 +27,7 @@ mod udp;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use file::replay;
+pub(crate) use delta_counts::DeltaCounts;
 pub(crate) use stats::{InputStats, InputStatus};
 
 use crate::config::InputConfig;

@@ -1,6 +1,6 @@
 //! Reads a stream of bytes to its end; each chunk is one delivery.
 
-use super::decode::{Decoder, Source};
+use super::decode::Decoder;
 use super::link::{End, Link};
 use std::io;
 use tokio::io::{AsyncRead, AsyncReadExt};
@@ -8,12 +8,8 @@ use tokio::io::{AsyncRead, AsyncReadExt};
 /// Chunk size: about eight hundred sentences.
 const CHUNK_BYTES: usize = 64 * 1024;
 
-pub(super) async fn pump(
-    mut stream: impl AsyncRead + Unpin,
-    source: Source,
-    link: &Link,
-) -> io::Result<End> {
-    let mut decoder = Decoder::new(link.name.clone(), source);
+pub(super) async fn pump(mut stream: impl AsyncRead + Unpin, link: &Link) -> io::Result<End> {
+    let mut decoder = Decoder::new(link.name.clone());
     let mut buffer = vec![0; CHUNK_BYTES];
     loop {
         let count = stream.read(&mut buffer).await?;
@@ -24,11 +20,6 @@ pub(super) async fn pump(
         link.stats.count_received(count, &decoder.take_tally());
         link.deliver(decoder.take_observations()).await?;
     }
-    // The last line of a broken connection is incomplete; that of a recording may be whole.
-    if source == Source::Recording {
-        decoder.finish();
-        link.stats.count_received(0, &decoder.take_tally());
-        link.deliver(decoder.take_observations()).await?;
-    }
+    // The last line of a broken connection is incomplete.
     Ok(End::Closed)
 }

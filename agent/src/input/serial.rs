@@ -1,6 +1,5 @@
 //! Sentences from a serial port.
 
-use super::decode::Source;
 use super::link::{End, Link};
 use super::pump::pump;
 use crate::config::SerialConfig;
@@ -10,5 +9,5 @@ use tokio_serial::SerialPortBuilderExt;
 pub(super) async fn session(port: &SerialConfig, link: &Link) -> io::Result<End> {
     let stream = tokio_serial::new(&port.path, port.baud).open_native_async()?;
     link.opened();
-    pump(stream, Source::Live, link).await
+    pump(stream, link).await
 }

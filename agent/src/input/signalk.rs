@@ -1,5 +1,6 @@
 //! Deltas from a Signal K server over a WebSocket.
 
+use super::delta_counts::DeltaCounts;
 use super::link::{CONNECT_TIMEOUT, End, Link, connect};
 use super::signalk_delta::{DeltaReader, PATHS};
 use crate::config::SignalKUrl;
@@ -34,7 +35,12 @@ pub(super) async fn session(url: &SignalKUrl, link: &Link) -> io::Result<End> {
         let message = message.map_err(io::Error::other)?;
         link.stats.count_received(message.len(), &Tally::default());
         match message {
-            Message::Text(text) => link.deliver(deltas.read(&text, &link.stats)).await?,
+            Message::Text(text) => {
+                let mut counts = DeltaCounts::default();
+                let observations = deltas.read(&text, &mut counts);
+                link.stats.count_values(&counts);
+                link.deliver(observations).await?;
+            }
             Message::Binary(_) => link.stats.reject("bad delta"),
             Message::Close(_) => return Ok(End::Closed),
             Message::Ping(_) | Message::Pong(_) | Message::Frame(_) => {}

@@ -9,8 +9,8 @@
 //! Values that a server computes are ignored: a true heading made of a magnetic one is no reference
 //! for the compass. Other vessels are ignored too.
 
+use super::delta_counts::DeltaCounts;
 use super::signalk_value::{difference_deg, direction_deg, read_standalone};
-use super::stats::InputStats;
 use crate::instruments::{Observation, Reading, Source};
 use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, Variation};
 use binnacle_compass::time::Timestamp;
@@ -44,12 +44,22 @@ const MAX_SOURCES: usize = 200;
 /// Source of values that the server computes itself.
 const DERIVED: &str = "derived-data";
 
+/// Paths that no other vessel transmits.
+const OWN_SHIP_PATHS: [&str; 3] = [
+    "navigation.headingCompass",
+    "navigation.headingMagnetic",
+    "navigation.magneticDeviation",
+];
+
 /// Reader of one connection's messages.
 #[derive(Debug)]
 pub(super) struct DeltaReader {
     input: Arc<str>,
     /// `vessels.urn:…`, once the server has identified itself.
     own_ship: Option<String>,
+    /// Set for recordings, in which no server may have identified itself: the own ship is the one
+    /// whose magnetic heading is known.
+    infers_own_ship: bool,
     /// Last deviation and variation of each source; never applied.
     differences: HashMap<Option<Arc<str>>, Differences>,
 }
@@ -100,22 +110,32 @@ impl DeltaReader {
         DeltaReader {
             input,
             own_ship: None,
+            infers_own_ship: false,
             differences: HashMap::new(),
         }
     }
 
+    /// Creates a reader of a recording.
+    pub(super) fn of_recording(input: Arc<str>) -> DeltaReader {
+        DeltaReader {
+            infers_own_ship: true,
+            ..DeltaReader::new(input)
+        }
+    }
+
     /// Returns the observations of one message; unused parts are counted.
-    pub(super) fn read(&mut self, text: &str, stats: &InputStats) -> Vec<Observation> {
+    pub(super) fn read(&mut self, text: &str, counts: &mut DeltaCounts) -> Vec<Observation> {
         let mut out = Vec::new();
         let Ok(message) = serde_json::from_str::<Message<'_>>(text) else {
-            stats.reject("bad delta");
+            counts.reject("bad delta");
             return out;
         };
-        if let Some(own_ship) = message.own_ship {
-            self.own_ship = Some(strip_vessel_prefix(&own_ship).to_owned());
+        if let Some(own_ship) = &message.own_ship {
+            self.own_ship = Some(strip_vessel_prefix(own_ship).to_owned());
         }
+        self.infer_own_ship(&message);
         if !self.is_own_ship(message.context.as_deref()) {
-            stats.reject("another vessel");
+            counts.reject("another vessel");
             return out;
         }
         let greeting = message.timestamp.as_deref().map(Timestamp::parse);
@@ -125,13 +145,13 @@ impl DeltaReader {
         }
         for update in &message.updates {
             if update.source_ref.as_deref().is_some_and(is_derived) {
-                stats.reject("computed by the server");
+                counts.reject("computed by the server");
                 continue;
             }
             let device = self.device(update);
             let stated = update.timestamp.as_deref().map(Timestamp::parse);
             let Ok(stated) = stated.transpose() else {
-                stats.reject("bad timestamp");
+                counts.reject("bad timestamp");
                 continue;
             };
             // A compass reading is combined with the deviation beside it.
@@ -140,7 +160,7 @@ impl DeltaReader {
                 .iter()
                 .partition(|value| value.path.starts_with("navigation.magnetic"));
             for value in differences.into_iter().chain(others) {
-                self.read_value(value, &device, stated, stats, &mut out);
+                self.read_value(value, &device, stated, counts, &mut out);
             }
         }
         out
@@ -169,6 +189,17 @@ impl DeltaReader {
         }
     }
 
+    fn infer_own_ship(&mut self, message: &Message<'_>) {
+        if !self.infers_own_ship || self.own_ship.is_some() {
+            return;
+        }
+        let mut values = message.updates.iter().flat_map(|update| &update.values);
+        if values.any(|value| OWN_SHIP_PATHS.contains(&value.path.as_ref())) {
+            let context = message.context.as_deref().map(strip_vessel_prefix);
+            self.own_ship = context.filter(|name| *name != "self").map(str::to_owned);
+        }
+    }
+
     fn is_own_ship(&self, context: Option<&str>) -> bool {
         match context.map(strip_vessel_prefix) {
             None | Some("self") => true,
@@ -181,11 +212,11 @@ impl DeltaReader {
         value: &PathValue<'_>,
         device: &Source,
         stated: Option<Timestamp>,
-        stats: &InputStats,
+        counts: &mut DeltaCounts,
         out: &mut Vec<Observation>,
     ) {
         let Some(path) = PATHS.into_iter().find(|path| *path == value.path) else {
-            return stats.reject("unknown path");
+            return counts.reject("unknown path");
         };
         let before = out.len();
         let mut push = |sentence: &[u8; 3], reading| {
@@ -239,12 +270,12 @@ impl DeltaReader {
         };
         if read.is_err() {
             out.truncate(before);
-            return stats.reject("bad value");
+            return counts.reject("bad value");
         }
         if path.starts_with("navigation.magnetic") {
             self.remember(device, differences);
         }
-        stats.count_value(path);
+        counts.count_value(path);
     }
 
     fn remember(&mut self, device: &Source, differences: Differences) {
@@ -271,14 +302,14 @@ mod tests {
     use serde_json::json;
     use std::f64::consts::TAU;
 
-    fn read_all(messages: &[Value]) -> (Vec<Observation>, InputStats) {
-        let stats = InputStats::default();
+    fn read_all(messages: &[Value]) -> (Vec<Observation>, DeltaCounts) {
+        let mut counts = DeltaCounts::default();
         let mut reader = DeltaReader::new("sk".into());
         let mut out = Vec::new();
         for message in messages {
-            out.extend(reader.read(&message.to_string(), &stats));
+            out.extend(reader.read(&message.to_string(), &mut counts));
         }
-        (out, stats)
+        (out, counts)
     }
 
     fn delta(values: &Value) -> Value {
@@ -298,7 +329,7 @@ mod tests {
             (-0.05, 0.3),
             (-0.05, -0.3),
         ] {
-            let (seen, stats) = read_all(&[delta(&json!([
+            let (seen, counts) = read_all(&[delta(&json!([
                 {"path": "navigation.headingCompass", "value": 1.5},
                 {"path": "navigation.magneticDeviation", "value": deviation},
                 {"path": "navigation.magneticVariation", "value": variation},
@@ -320,7 +351,7 @@ mod tests {
                 (&seen[0].source.talker, &seen[0].source.sentence),
                 (b"SK", b"HDG")
             );
-            assert_eq!(stats.status().sentences["navigation.headingCompass"], 1);
+            assert_eq!(counts.values["navigation.headingCompass"], 1);
         }
     }
 
@@ -406,8 +437,8 @@ mod tests {
                 json!(1e300),
             ] {
                 let harmless = path == "navigation.attitude" && wrong.is_object();
-                let (seen, stats) = read_all(&[delta(&json!([{"path": path, "value": wrong}]))]);
-                assert_eq!(stats.status().rejected.contains_key("bad value"), !harmless);
+                let (seen, counts) = read_all(&[delta(&json!([{"path": path, "value": wrong}]))]);
+                assert_eq!(counts.rejected.contains_key("bad value"), !harmless);
                 assert_eq!(seen, [], "{path} {wrong}");
             }
         }
@@ -428,7 +459,7 @@ mod tests {
         let heading = json!([{"path": "navigation.headingTrue", "value": 1.0}]);
         let of = |context: &str| json!({"context": context, "updates": [{"values": heading}]});
         let computed = json!({"updates": [{"$source": "derived-data", "values": heading}]});
-        let (seen, stats) = read_all(&[
+        let (seen, counts) = read_all(&[
             of("vessels.urn:mrn:imo:mmsi:230099999"),
             json!({"name": "server", "version": "2", "self": "vessels.urn:mrn:imo:mmsi:230099999"}),
             of("vessels.urn:mrn:imo:mmsi:230099999"),
@@ -436,14 +467,14 @@ mod tests {
             computed,
         ]);
         assert_eq!(seen.len(), 1);
-        let rejected = stats.status().rejected;
+        let rejected = counts.rejected;
         assert_eq!(rejected["another vessel"], 2);
         assert_eq!(rejected["computed by the server"], 1);
     }
 
     #[test]
     fn what_is_no_delta_is_counted() {
-        let stats = InputStats::default();
+        let mut counts = DeltaCounts::default();
         let mut reader = DeltaReader::new("sk".into());
         for text in [
             "",
@@ -453,8 +484,8 @@ mod tests {
             "{\"updates\": 5}",
             "{\"updates\":[{\"values\":[{}]}]}",
         ] {
-            assert_eq!(reader.read(text, &stats), []);
+            assert_eq!(reader.read(text, &mut counts), []);
         }
-        assert_eq!(stats.status().rejected["bad delta"], 6);
+        assert_eq!(counts.rejected["bad delta"], 6);
     }
 }

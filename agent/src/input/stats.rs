@@ -1,5 +1,6 @@
 //! Counts of an input, shared between its task and the status page.
 
+use super::delta_counts::DeltaCounts;
 use binnacle_nmea::Tally;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -20,8 +21,7 @@ struct Counts {
     dropped: u64,
     sentences: Tally,
     /// Signal K values in use, and rejected deltas and values.
-    values: BTreeMap<&'static str, u64>,
-    rejected_values: BTreeMap<&'static str, u64>,
+    values: DeltaCounts,
     last_heard: Option<Instant>,
 }
 
@@ -53,9 +53,9 @@ impl InputStats {
     pub(crate) fn status(&self) -> InputStatus {
         let counts = self.lock();
         let mut sentences: BTreeMap<_, _> = counts.sentences.sentences().collect();
-        sentences.extend(&counts.values);
+        sentences.extend(&counts.values.values);
         let mut rejected: BTreeMap<_, _> = counts.sentences.rejected().collect();
-        rejected.extend(&counts.rejected_values);
+        rejected.extend(&counts.values.rejected);
         InputStatus {
             connected: counts.connected,
             problem: counts.problem.clone(),
@@ -107,12 +107,12 @@ impl InputStats {
         self.lock().dropped += observations as u64;
     }
 
-    pub(super) fn count_value(&self, kind: &'static str) {
-        *self.lock().values.entry(kind).or_default() += 1;
+    pub(super) fn count_values(&self, values: &DeltaCounts) {
+        self.lock().values.add(values);
     }
 
     pub(super) fn reject(&self, reason: &'static str) {
-        *self.lock().rejected_values.entry(reason).or_default() += 1;
+        *self.lock().values.rejected.entry(reason).or_default() += 1;
     }
 
     /// Counts stay consistent when a thread dies between two of them.

@@ -1,6 +1,5 @@
 //! Sentences over TCP, from a multiplexer or serial server.
 
-use super::decode::Source;
 use super::link::{End, Link, connect};
 use super::pump::pump;
 use crate::config::HostPort;
@@ -9,5 +8,5 @@ use std::io;
 pub(super) async fn session(address: &HostPort, link: &Link) -> io::Result<End> {
     let stream = connect(address.as_str()).await?;
     link.opened();
-    pump(stream, Source::Live, link).await
+    pump(stream, link).await
 }

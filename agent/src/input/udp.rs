@@ -3,7 +3,7 @@
 //!
 //! Senders of datagrams do not wait: what does not fit is dropped and counted.
 
-use super::decode::{Decoder, Source};
+use super::decode::Decoder;
 use super::link::{End, Link};
 use crate::config::Group;
 use socket2::{Domain, Protocol, Socket, Type};
@@ -38,7 +38,7 @@ async fn receive(socket: Socket, decode: fn(&mut Decoder, &[u8]), link: &Link) -
     socket.set_recv_buffer_size(RECEIVE_BUFFER_BYTES)?;
     let socket = UdpSocket::from_std(socket.into())?;
     link.opened();
-    let mut decoder = Decoder::new(link.name.clone(), Source::Live);
+    let mut decoder = Decoder::new(link.name.clone());
     let mut buffer = vec![0; MAX_DATAGRAM_BYTES];
     loop {
         let mut waiting = Some(socket.recv_from(&mut buffer).await?);

@@ -1,0 +1,26 @@
+//! Recordings: files that a logger, a voyage data recorder or a server has written.
+//!
+//! Invariants:
+//!
+//! - Each line has one of the formats of [`binnacle_nmea::recording::LineFormat`], and each format
+//!   one parser in [`decoder`].
+//! - The time of a line is that which the logger gave it. Where it gave none, it is that of the
+//!   receivers in the recording.
+//! - Each line that was not understood is counted by reason, with the number of the first.
+//! - No bytes cause a panic, and memory is bounded for any file.
+
+mod decoder;
+mod file_clock;
+mod lines;
+mod not_understood;
+mod open;
+mod reader;
+mod survey;
+
+#[cfg(test)]
+mod tests;
+
+pub(crate) use decoder::{Recorded, RollOver};
+pub(crate) use not_understood::NotUnderstood;
+pub(crate) use reader::RecordingReader;
+pub(crate) use survey::{LoggerClock, Plan, Survey};

@@ -1,0 +1,178 @@
+//! Survey of a recording before it is read: the order of its dates, and the error of its logger's
+//! clock.
+//!
+//! A logger may keep the time of a zone, or none that is right. The receivers in the recording know
+//! better, and their difference is the same for all lines.
+
+use super::decoder::{ROLL_OVER_MICROS, Recorded};
+use super::reader::RecordingReader;
+use crate::instruments::{Reading, is_recorded_time};
+use binnacle_compass::time::Timestamp;
+use binnacle_nmea::recording::DateOrder;
+use std::io;
+use std::path::Path;
+
+/// Bytes of a recording that are surveyed: some minutes of a busy bridge.
+const SURVEYED_BYTES: usize = 512 * 1024;
+/// Bytes within which a time is looked for.
+const SEARCHED_BYTES: usize = 64 * 1024 * 1024;
+/// Differences between logger and receiver that are compared.
+const MAX_DIFFERENCES: usize = 1_000;
+/// Difference from which a logger's clock is wrong, rather than late by its own delay.
+const LOGGER_TOLERANCE_MICROS: i64 = 60_000_000;
+const MICROS_A_DAY: u64 = 86_400_000_000;
+
+/// Settings by which a recording is decoded.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Plan {
+    /// Order of day and month in dates with slashes.
+    pub(crate) order: DateOrder,
+    /// Time by which the logger's clock is ahead, microseconds.
+    pub(crate) logger_ahead_micros: i64,
+    /// Cycles of 1,024 weeks that are added to the dates of receivers.
+    pub(crate) roll_overs: i64,
+    /// Time near which the recording lies, for lines with a time of day alone.
+    pub(crate) near: Option<Timestamp>,
+}
+
+/// Clock of a logger against the receivers that it recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LoggerClock {
+    /// The recording has no receiver, or no times of a logger.
+    Unknown,
+    /// They agree.
+    Agrees,
+    /// Time by which the logger is ahead, microseconds.
+    Ahead(i64),
+}
+
+/// Findings about a recording.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Survey {
+    /// Order of day and month; `None` when both are as good.
+    pub(crate) order: Option<DateOrder>,
+    /// Clock of the logger.
+    pub(crate) clock: LoggerClock,
+    /// Set if the logger gives lines their times.
+    pub(crate) is_stamped: bool,
+    /// First time, as the logger or else the receiver gives it.
+    pub(crate) first: Option<Timestamp>,
+}
+
+/// Reading of the beginning of a recording with one order of dates.
+#[derive(Debug, Default)]
+struct Pass {
+    stamps: u64,
+    logger: Option<Timestamp>,
+    first: Option<Timestamp>,
+    differences: Vec<i64>,
+}
+
+impl Survey {
+    /// Surveys the beginning of a recording that lies near a time, if one is known.
+    ///
+    /// # Errors
+    /// Fails when the file cannot be read.
+    pub(crate) fn of(path: &Path, near: Option<Timestamp>) -> io::Result<Survey> {
+        let month_first = Pass::read(path, DateOrder::MonthFirst, near)?;
+        let day_first = Pass::read(path, DateOrder::DayFirst, near)?;
+        let quality = |pass: &Pass| (pass.stamps, std::cmp::Reverse(pass.days_apart()));
+        let order = match quality(&month_first).cmp(&quality(&day_first)) {
+            std::cmp::Ordering::Greater => Some(DateOrder::MonthFirst),
+            std::cmp::Ordering::Less => Some(DateOrder::DayFirst),
+            std::cmp::Ordering::Equal => None,
+        };
+        let pass = match order {
+            Some(DateOrder::DayFirst) => day_first,
+            Some(DateOrder::MonthFirst) | None => month_first,
+        };
+        Ok(Survey {
+            order,
+            clock: pass.logger_clock(),
+            is_stamped: pass.stamps > 0,
+            first: pass.first,
+        })
+    }
+
+    /// Returns the settings for this recording alone.
+    pub(crate) fn plan(&self) -> Plan {
+        Plan {
+            order: self.order.unwrap_or_default(),
+            logger_ahead_micros: match self.clock {
+                LoggerClock::Ahead(micros) => micros,
+                LoggerClock::Unknown | LoggerClock::Agrees => 0,
+            },
+            roll_overs: 0,
+            near: self.first,
+        }
+    }
+}
+
+impl Pass {
+    fn read(path: &Path, order: DateOrder, near: Option<Timestamp>) -> io::Result<Pass> {
+        let plan = Plan {
+            order,
+            near,
+            ..Plan::default()
+        };
+        let mut reader = RecordingReader::open(path, "survey".into(), plan)?;
+        let mut pass = Pass::default();
+        let mut bytes = 0;
+        while let Some(chunk) = reader.next_chunk() {
+            bytes += chunk.bytes;
+            chunk
+                .recorded
+                .iter()
+                .for_each(|recorded| pass.add(recorded));
+            let enough = if pass.first.is_some() {
+                SURVEYED_BYTES
+            } else {
+                SEARCHED_BYTES
+            };
+            if bytes >= enough {
+                break;
+            }
+        }
+        Ok(pass)
+    }
+
+    fn add(&mut self, recorded: &Recorded) {
+        let (Reading::Time(at) | Reading::Fix { time: Some(at), .. }) = recorded.seen.reading
+        else {
+            return;
+        };
+        self.first = self.first.or(Some(at));
+        if is_recorded_time(&recorded.seen) {
+            self.stamps += 1;
+            self.logger = Some(at);
+            return;
+        }
+        if let Some(logger) = self.logger
+            && self.differences.len() < MAX_DIFFERENCES
+        {
+            self.differences.push(logger.micros() - at.micros());
+        }
+    }
+
+    /// Returns the middle of the differences between logger and receiver.
+    fn difference(&self) -> Option<i64> {
+        let mut sorted = self.differences.clone();
+        sorted.sort_unstable();
+        sorted.get(sorted.len() / 2).copied()
+    }
+
+    /// Returns the days between logger and receiver.
+    fn days_apart(&self) -> u64 {
+        self.difference().unwrap_or_default().unsigned_abs() / MICROS_A_DAY
+    }
+
+    fn logger_clock(&self) -> LoggerClock {
+        match self.difference() {
+            None => LoggerClock::Unknown,
+            Some(ahead) if ahead.abs() < LOGGER_TOLERANCE_MICROS => LoggerClock::Agrees,
+            // No clock of a logger is wrong by decades: the receiver is.
+            Some(ahead) if ahead.abs() > ROLL_OVER_MICROS / 2 => LoggerClock::Unknown,
+            Some(ahead) => LoggerClock::Ahead(ahead),
+        }
+    }
+}
