@@ -3,13 +3,13 @@
 
 use crate::config::{RolesConfig, SilenceConfig};
 use crate::instruments::{
-    AGENT_TALKER, ClockCheckpoint, GnssGuard, HeardSources, Independence, Interference,
-    Observation, OwnOutput, Reading, Readings, ReckonedPlace, Roles, SentHeading, SourceReport,
-    StatedClocks, is_recorded_time,
+    AGENT_TALKER, ClockCheckpoint, GnssGuard, HeardSources, Independence, Interference, OwnOutput,
+    Readings, ReckonedPlace, Roles, SentHeading, SourceReport, StatedClocks,
 };
 use crate::sampler::{Exclusion, Sampler};
 use binnacle_compass::angle::TrueHeading;
 use binnacle_compass::time::Timestamp;
+use binnacle_observation::{Observation, Reading, is_recorded_time};
 use binnacle_wire::messages::Settings;
 use std::time::Duration;
 use tokio::time::Instant;
@@ -208,7 +208,7 @@ impl Acquisition {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::instruments::Source;
+    use binnacle_observation::Source;
 
     fn silence() -> SilenceConfig {
         SilenceConfig::default()

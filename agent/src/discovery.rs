@@ -4,7 +4,8 @@
 //! compass is one and not several, and a true heading of the compass's own device is left out.
 
 use crate::acquisition::Acquisition;
-use crate::instruments::{HeardSource, Reading, Source, SourceReport};
+use crate::instruments::{HeardSource, SourceReport};
+use binnacle_observation::{Reading, Source};
 use serde::Serialize;
 use std::fmt::Write;
 use tokio::time::Instant;

@@ -1,9 +1,9 @@
 //! Decoding of bytes to observations: split into lines, parsed, counted.
 
-use super::readings::{readings, timestamp};
-use crate::instruments::{Observation, Source};
 use binnacle_nmea::lines::Line;
 use binnacle_nmea::{Lines, Rejected, Tally, datagram};
+use binnacle_observation::{Observation, Source};
+use binnacle_observation::{readings, timestamp};
 use std::net::IpAddr;
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! Recorded lines from a file.
 
 use super::link::{End, Link};
-use super::recording::{RecordingReader, Survey};
-use crate::instruments::Observation;
+use binnacle_observation::Observation;
+use binnacle_observation::recording::{RecordingReader, Survey};
 use std::io;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Parts that all kinds of inputs share: delivery of observations, counts, connections and pauses.
 
 use super::stats::InputStats;
-use crate::instruments::Observation;
+use binnacle_observation::Observation;
 use std::io;
 use std::sync::Arc;
 use std::time::Duration;

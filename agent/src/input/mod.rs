@@ -8,15 +8,9 @@
 //! - Every line that is not used is counted by reason.
 
 mod decode;
-mod delta_counts;
 mod link;
 mod pump;
-mod readings;
-mod signalk_delta;
-mod signalk_value;
 mod stats;
-
-pub(crate) mod recording;
 
 mod file;
 mod serial;
@@ -27,11 +21,10 @@ mod udp;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use delta_counts::DeltaCounts;
 pub(crate) use stats::{InputStats, InputStatus};
 
 use crate::config::InputConfig;
-use crate::instruments::Observation;
+use binnacle_observation::Observation;
 use link::{Backoff, End, Link};
 use std::io;
 use std::sync::Arc;

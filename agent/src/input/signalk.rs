@@ -1,10 +1,9 @@
 //! Deltas from a Signal K server over a WebSocket.
 
-use super::delta_counts::DeltaCounts;
 use super::link::{CONNECT_TIMEOUT, End, Link, connect};
-use super::signalk_delta::{DeltaReader, PATHS};
 use crate::config::SignalKUrl;
 use binnacle_nmea::Tally;
+use binnacle_observation::signalk::{DeltaCounts, DeltaReader, PATHS};
 use futures_util::{SinkExt, StreamExt};
 use serde_json::json;
 use std::io;

@@ -1,7 +1,7 @@
 //! Counts of an input, shared between its task and the status page.
 
-use super::delta_counts::DeltaCounts;
 use binnacle_nmea::Tally;
+use binnacle_observation::signalk::DeltaCounts;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};

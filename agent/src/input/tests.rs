@@ -2,7 +2,7 @@
 
 use super::{InputStats, spawn};
 use crate::config::InputConfig;
-use crate::instruments::{Observation, Reading, is_recorded_time};
+use binnacle_observation::{Observation, Reading, is_recorded_time};
 use futures_util::{SinkExt, StreamExt};
 use std::net::Ipv4Addr;
 use std::sync::Arc;

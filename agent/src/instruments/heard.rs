@@ -1,8 +1,7 @@
 //! Every source that is heard, whether it has a role or not.
 
-use super::observation::{Observation, Reading};
-use super::source::Source;
 use binnacle_nmea::n2k::Address;
+use binnacle_observation::{Observation, Reading, Source};
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, VecDeque};
 use std::mem::discriminant;

@@ -6,12 +6,10 @@ mod gnss_clock;
 mod gnss_guard;
 mod heard;
 mod independence;
-mod observation;
 mod own_output;
 mod readings;
 mod role;
 mod roles;
-mod source;
 mod stated_clock;
 mod two_sensors;
 
@@ -19,11 +17,9 @@ pub(crate) use clock_checkpoint::ClockCheckpoint;
 pub(crate) use gnss_guard::{GnssGuard, Interference, ReckonedPlace, offset};
 pub(crate) use heard::{HeardSource, HeardSources, SourceReport};
 pub(crate) use independence::Independence;
-pub(crate) use observation::{Observation, RECORDED_TIME, Reading, is_recorded_time};
-pub(crate) use own_output::{OwnOutput, SentHeading};
+pub(crate) use own_output::{AGENT_TALKER, OwnOutput, SentHeading};
 pub(crate) use readings::{Latest, Readings};
 #[cfg(test)]
 pub(crate) use roles::ReferenceHeading;
 pub(crate) use roles::{Instrument, Refusal, Roles, Signal};
-pub(crate) use source::{AGENT_TALKER, Source};
 pub(crate) use stated_clock::StatedClocks;

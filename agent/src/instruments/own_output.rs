@@ -5,12 +5,15 @@
 //! and the variation of the field. A compass comes before what the agent makes of it. A source
 //! whose changes have all been sent shortly before is therefore the agent's own.
 
-use super::observation::{Observation, Reading};
-use super::source::Source;
 use binnacle_compass::angle::{CompassHeading, Deviation, Variation, wrap_180};
+use binnacle_observation::{Observation, Reading, Source};
 use std::collections::{HashMap, VecDeque};
 use std::time::Duration;
 use tokio::time::Instant;
+
+/// Talker of the agent's own sentences by default. Sources without a configured talker never match
+/// its headings.
+pub(crate) const AGENT_TALKER: [u8; 2] = *b"II";
 
 /// Time after which a heading comes back no more: the compass has fallen silent by then.
 const ECHO_TIME: Duration = Duration::from_secs(2);

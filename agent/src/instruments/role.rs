@@ -6,12 +6,12 @@
 //! - Of several devices that match a selection, one is used while it is heard, the first by its
 //!   name. All are named, and their readings are never mixed.
 
-use super::observation::{Observation, Reading};
-use super::source::{AGENT_TALKER, Source};
+use super::own_output::AGENT_TALKER;
 use super::two_sensors::TwoSensors;
 use crate::config::SourceConfig;
 use binnacle_compass::sample::SourceId;
 use binnacle_compass::time::Timestamp;
+use binnacle_observation::{Observation, Reading, Source};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::Instant;

@@ -10,8 +10,8 @@
 //! - The least delay counts as none. A later value is older by its delay.
 //! - A value without a stated time was measured when it arrived.
 
-use super::source::Source;
 use binnacle_compass::time::Timestamp;
+use binnacle_observation::Source;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;

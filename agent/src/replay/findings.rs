@@ -3,10 +3,10 @@
 use super::merge::Finished;
 use super::planning::Planned;
 use crate::acquisition::Acquisition;
-use crate::input::recording::NotUnderstood;
-use crate::instruments::{Reading, Source};
 use crate::sampler::Tally;
 use binnacle_compass::time::Timestamp;
+use binnacle_observation::recording::NotUnderstood;
+use binnacle_observation::{Reading, Source};
 use std::fmt::Write;
 use tokio::time::Instant;
 

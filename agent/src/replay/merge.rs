@@ -4,12 +4,12 @@
 //! and closed at its end, so that a year of them needs few open files.
 
 use super::planning::Planned;
-use crate::input::DeltaCounts;
-use crate::input::recording::{NotUnderstood, Recorded, RecordingReader, RollOver};
-use crate::instruments::Observation;
 use anyhow::Context;
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::Tally;
+use binnacle_observation::Observation;
+use binnacle_observation::recording::{NotUnderstood, Recorded, RecordingReader, RollOver};
+use binnacle_observation::signalk::DeltaCounts;
 use std::collections::VecDeque;
 use std::path::PathBuf;
 

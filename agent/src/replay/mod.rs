@@ -16,11 +16,11 @@ mod tests;
 
 use crate::acquisition::Acquisition;
 use crate::config::{RolesConfig, SilenceConfig};
-use crate::input::DeltaCounts;
-use crate::input::recording::NotUnderstood;
 use crate::sampler::Tally;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
+use binnacle_observation::recording::NotUnderstood;
+use binnacle_observation::signalk::DeltaCounts;
 use binnacle_wire::messages::Settings;
 use findings::Findings;
 use merge::{Finished, merge};

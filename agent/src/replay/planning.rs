@@ -1,10 +1,10 @@
 //! Plan of several recordings that are read as one: they are surveyed first, and one helps with
 //! the times of another.
 
-use crate::input::recording::{LoggerClock, Plan, Survey};
 use anyhow::Context;
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::recording::DateOrder;
+use binnacle_observation::recording::{LoggerClock, Plan, Survey};
 use std::path::{Path, PathBuf};
 
 /// Difference between the errors of clocks that are one logger's.

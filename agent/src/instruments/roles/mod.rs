@@ -6,14 +6,13 @@
 //! of the compass, and is no reference.
 
 use super::gnss_clock::{GnssClock, Step};
-use super::observation::{Observation, Reading};
 use super::role::{Moment, Role, Use};
-use super::source::Source;
 use crate::config::{RolesConfig, SilenceConfig};
 use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
 use binnacle_compass::position::Position;
 use binnacle_compass::sample::SourceId;
 use binnacle_compass::time::Timestamp;
+use binnacle_observation::{Observation, Reading, Source};
 use std::time::Duration;
 use tokio::time::Instant;
 

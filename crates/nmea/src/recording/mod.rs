@@ -23,7 +23,8 @@ mod digits;
 mod moment;
 mod stamp;
 
-pub use stamp::{DateOrder, Stamp, read_stamp};
+pub use moment::DateOrder;
+pub use stamp::{Stamp, read_stamp};
 
 use content::{delta_end, find_start, sentence_end};
 

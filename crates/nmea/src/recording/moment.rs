@@ -1,7 +1,6 @@
 //! Dates and times of day, as a logger may write them in one token.
 
 use super::digits::Digits;
-use super::stamp::DateOrder;
 use crate::time::{Date, TimeOfDay, unix_micros};
 
 pub(super) const MICROS_A_SECOND: i64 = 1_000_000;
@@ -12,6 +11,16 @@ const YEARS: std::ops::RangeInclusive<u64> = 1980..=2099;
 const MONTHS: [&[u8; 3]; 12] = [
     b"jan", b"feb", b"mar", b"apr", b"may", b"jun", b"jul", b"aug", b"sep", b"oct", b"nov", b"dec",
 ];
+
+/// Order of day and month in dates such as `08/01/2014`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DateOrder {
+    /// Month, day, year: the ship logs of NOAA (SCS) and others.
+    #[default]
+    MonthFirst,
+    /// Day, month, year.
+    DayFirst,
+}
 
 /// Start of a day, and whatever stands behind the date.
 type DayAndRest<'a> = (i64, Digits<'a>);
@@ -44,11 +53,7 @@ fn year_first(mut digits: Digits<'_>) -> Option<DayAndRest<'_>> {
 fn year_last(mut digits: Digits<'_>, order: DateOrder) -> Option<DayAndRest<'_>> {
     let first = digits.number(1, 2)?;
     let separator = digits.one_of(b"-/.")?;
-    if let Some(month) = digits
-        .0
-        .first_chunk::<3>()
-        .and_then(|name| month_number(name))
-    {
+    if let Some(month) = digits.0.first_chunk::<3>().copied().and_then(month_number) {
         digits.0 = &digits.0[3..];
         digits.one_of(&[separator])?;
         let year = year(digits.number(4, 4)?)?;
@@ -145,7 +150,8 @@ pub(super) fn zone(token: &[u8]) -> Option<i64> {
     if !digits.is_done() || hours > 14 || minutes > 59 {
         return None;
     }
-    Some(sign * (hours * 60 + minutes) as i64 * 60 * MICROS_A_SECOND)
+    let ahead_minutes = i64::try_from(hours * 60 + minutes).ok()?;
+    Some(sign * ahead_minutes * 60 * MICROS_A_SECOND)
 }
 
 /// Reads a whole token as seconds, milliseconds, microseconds or nanoseconds
@@ -174,7 +180,7 @@ pub(super) fn since_1970(token: &[u8]) -> Option<i64> {
 }
 
 /// Returns the number of a month from the first letters of its name.
-pub(super) fn month_number(name: &[u8; 3]) -> Option<u64> {
+pub(super) fn month_number(name: [u8; 3]) -> Option<u64> {
     let lower = name.map(|letter| letter.to_ascii_lowercase());
     let place = MONTHS.iter().position(|month| **month == lower)?;
     Some(place as u64 + 1)

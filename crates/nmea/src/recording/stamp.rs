@@ -2,7 +2,8 @@
 
 use super::digits::Digits;
 use super::moment::{
-    compact_time_of_day, date, month_number, since_1970, start_of, time_of_day, year, zone,
+    DateOrder, compact_time_of_day, date, month_number, since_1970, start_of, time_of_day, year,
+    zone,
 };
 
 /// Bytes of a prefix that are searched for a time.
@@ -17,16 +18,6 @@ pub enum Stamp {
     /// Microseconds since midnight UTC of an unknown day. Negative, or more than
     /// a day, where the zone moves it to another one.
     TimeOfDay(i64),
-}
-
-/// Order of day and month in dates such as `08/01/2014`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DateOrder {
-    /// Month, day, year: the ship logs of NOAA (SCS) and others.
-    #[default]
-    MonthFirst,
-    /// Day, month, year.
-    DayFirst,
 }
 
 /// Finds the time in a prefix: the first date and the first time of day, or a
@@ -109,10 +100,7 @@ impl Found {
     fn time_joined(&mut self, day: i64, mut rest: Digits<'_>) -> Option<i64> {
         let separator = rest.one_of(b"Tt_:-");
         // The device's name may follow behind a plus sign.
-        let text = match rest.0 {
-            [text @ .., b'+'] => text,
-            text => text,
-        };
+        let text = rest.0.strip_suffix(b"+").unwrap_or(rest.0);
         let time = match separator {
             Some(_) => time_of_day(text).or_else(|| compact_time_of_day(text)),
             None => compact_time_of_day(text),
@@ -178,7 +166,7 @@ impl NamedDate {
         if length == 0 {
             let name = token.first_chunk::<3>()?;
             if token.iter().all(u8::is_ascii_alphabetic) {
-                self.month = self.month.or(month_number(name));
+                self.month = self.month.or(month_number(*name));
             }
         } else if length == token.len() && length == 4 {
             self.year = digits.number(4, 4).and_then(year);

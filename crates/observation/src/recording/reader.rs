@@ -2,7 +2,7 @@
 
 use super::decoder::{Decoder, Recorded};
 use super::open::open;
-use super::survey::Plan;
+use super::plan::Plan;
 use std::fmt;
 use std::io::{self, Read};
 use std::path::Path;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 const CHUNK_BYTES: usize = 64 * 1024;
 
 /// Reader of one recording.
-pub(crate) struct RecordingReader {
+pub struct RecordingReader {
     bytes: Box<dyn Read + Send>,
     buffer: Vec<u8>,
     decoder: Decoder,
@@ -21,11 +21,11 @@ pub(crate) struct RecordingReader {
 
 /// Chunk of a recording.
 #[derive(Debug, Default)]
-pub(crate) struct Chunk {
+pub struct Chunk {
     /// Bytes that were read.
-    pub(crate) bytes: usize,
+    pub bytes: usize,
     /// Observations in the order of the lines.
-    pub(crate) recorded: Vec<Recorded>,
+    pub recorded: Vec<Recorded>,
 }
 
 impl RecordingReader {
@@ -33,7 +33,7 @@ impl RecordingReader {
     ///
     /// # Errors
     /// Fails when the file cannot be read.
-    pub(crate) fn open(path: &Path, input: Arc<str>, plan: Plan) -> io::Result<RecordingReader> {
+    pub fn open(path: &Path, input: Arc<str>, plan: Plan) -> io::Result<RecordingReader> {
         Ok(RecordingReader {
             bytes: open(path)?,
             buffer: vec![0; CHUNK_BYTES],
@@ -45,7 +45,7 @@ impl RecordingReader {
 
     /// Reads the next chunk; `None` behind the last one. A file that cannot be read to its end, as
     /// a compressed one that was cut short, ends where that is found.
-    pub(crate) fn next_chunk(&mut self) -> Option<Chunk> {
+    pub fn next_chunk(&mut self) -> Option<Chunk> {
         if self.is_done {
             return None;
         }
@@ -66,12 +66,12 @@ impl RecordingReader {
     }
 
     /// Returns the decoder, for its counts.
-    pub(crate) fn decoder(&mut self) -> &mut Decoder {
+    pub fn decoder(&mut self) -> &mut Decoder {
         &mut self.decoder
     }
 
     /// Returns the reason why the file ended before its end.
-    pub(crate) fn problem(&self) -> Option<&str> {
+    pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
 }

@@ -4,9 +4,10 @@
 //! A logger may keep the time of a zone, or none that is right. The receivers in the recording know
 //! better, and their difference is the same for all lines.
 
-use super::decoder::{ROLL_OVER_MICROS, Recorded};
+use super::decoder::Recorded;
+use super::plan::{Plan, ROLL_OVER_MICROS};
 use super::reader::RecordingReader;
-use crate::instruments::{Reading, is_recorded_time};
+use crate::{Reading, is_recorded_time};
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::recording::DateOrder;
 use std::io;
@@ -22,22 +23,9 @@ const MAX_DIFFERENCES: usize = 1_000;
 const LOGGER_TOLERANCE_MICROS: i64 = 60_000_000;
 const MICROS_A_DAY: u64 = 86_400_000_000;
 
-/// Settings by which a recording is decoded.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Plan {
-    /// Order of day and month in dates with slashes.
-    pub(crate) order: DateOrder,
-    /// Time by which the logger's clock is ahead, microseconds.
-    pub(crate) logger_ahead_micros: i64,
-    /// Cycles of 1,024 weeks that are added to the dates of receivers.
-    pub(crate) roll_overs: i64,
-    /// Time near which the recording lies, for lines with a time of day alone.
-    pub(crate) near: Option<Timestamp>,
-}
-
 /// Clock of a logger against the receivers that it recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LoggerClock {
+pub enum LoggerClock {
     /// The recording has no receiver, or no times of a logger.
     Unknown,
     /// They agree.
@@ -48,15 +36,15 @@ pub(crate) enum LoggerClock {
 
 /// Findings about a recording.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Survey {
+pub struct Survey {
     /// Order of day and month; `None` when both are as good.
-    pub(crate) order: Option<DateOrder>,
+    pub order: Option<DateOrder>,
     /// Clock of the logger.
-    pub(crate) clock: LoggerClock,
+    pub clock: LoggerClock,
     /// Set if the logger gives lines their times.
-    pub(crate) is_stamped: bool,
+    pub is_stamped: bool,
     /// First time, as the logger or else the receiver gives it.
-    pub(crate) first: Option<Timestamp>,
+    pub first: Option<Timestamp>,
 }
 
 /// Reading of the beginning of a recording with one order of dates.
@@ -73,7 +61,7 @@ impl Survey {
     ///
     /// # Errors
     /// Fails when the file cannot be read.
-    pub(crate) fn of(path: &Path, near: Option<Timestamp>) -> io::Result<Survey> {
+    pub fn of(path: &Path, near: Option<Timestamp>) -> io::Result<Survey> {
         let month_first = Pass::read(path, DateOrder::MonthFirst, near)?;
         let day_first = Pass::read(path, DateOrder::DayFirst, near)?;
         let quality = |pass: &Pass| (pass.stamps, std::cmp::Reverse(pass.days_apart()));
@@ -95,7 +83,7 @@ impl Survey {
     }
 
     /// Returns the settings for this recording alone.
-    pub(crate) fn plan(&self) -> Plan {
+    pub fn plan(&self) -> Plan {
         Plan {
             order: self.order.unwrap_or_default(),
             logger_ahead_micros: match self.clock {

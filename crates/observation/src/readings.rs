@@ -3,7 +3,7 @@
 //! VHW gives the log's speed alone: it repeats the heading of another instrument without its
 //! status. HBT gives no reading. A course over ground is never a heading.
 
-use crate::instruments::Reading;
+use crate::Reading;
 use binnacle_compass::angle::{
     CompassHeading, CourseOverGround, Deviation, MagneticHeading, TrueHeading, Variation,
 };
@@ -13,7 +13,7 @@ use binnacle_nmea::Data;
 use binnacle_nmea::sentence::{self, Hdg, Rmc, Ths, ThsMode, Xdr};
 
 /// Passes each reading of a sentence to `each`: up to three.
-pub(super) fn readings(data: &Data, mut each: impl FnMut(Reading)) {
+pub fn readings(data: &Data, mut each: impl FnMut(Reading)) {
     let reading = match data {
         Data::Hdg(hdg) => compass(hdg),
         Data::Hdm(hdm) => hdm
@@ -116,7 +116,7 @@ fn place(position: sentence::Position) -> Option<Position> {
 }
 
 /// Converts to a timestamp, if the calendar has it.
-pub(super) fn timestamp(unix_micros: i64) -> Option<Timestamp> {
+pub fn timestamp(unix_micros: i64) -> Option<Timestamp> {
     Timestamp::from_micros(unix_micros).ok()
 }
 

@@ -1,7 +1,7 @@
 //! Recordings in the formats that loggers write.
 
 use super::*;
-use crate::instruments::{Reading, is_recorded_time};
+use crate::{Reading, is_recorded_time};
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::recording::DateOrder;
 use proptest::prelude::*;

@@ -1,6 +1,6 @@
 //! Signal K values in the agent's units.
 
-use crate::instruments::Reading;
+use crate::Reading;
 use binnacle_compass::angle::{CourseOverGround, TrueHeading};
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;

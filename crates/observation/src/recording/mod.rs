@@ -3,7 +3,7 @@
 //! Invariants:
 //!
 //! - Each line has one of the formats of [`binnacle_nmea::recording::LineFormat`], and each format
-//!   one parser in [`decoder`].
+//!   one parser in `decoder.rs`.
 //! - The time of a line is that which the logger gave it. Where it gave none, it is that of the
 //!   receivers in the recording.
 //! - Each line that was not understood is counted by reason, with the number of the first.
@@ -14,13 +14,15 @@ mod file_clock;
 mod lines;
 mod not_understood;
 mod open;
+mod plan;
 mod reader;
 mod survey;
 
 #[cfg(test)]
 mod tests;
 
-pub(crate) use decoder::{Recorded, RollOver};
-pub(crate) use not_understood::NotUnderstood;
-pub(crate) use reader::RecordingReader;
-pub(crate) use survey::{LoggerClock, Plan, Survey};
+pub use decoder::{Decoder, Recorded, RollOver};
+pub use not_understood::{NotUnderstood, Rejections};
+pub use plan::Plan;
+pub use reader::{Chunk, RecordingReader};
+pub use survey::{LoggerClock, Survey};

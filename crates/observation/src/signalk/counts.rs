@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 
 /// Values by path, and rejected deltas and values by reason.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct DeltaCounts {
+pub struct DeltaCounts {
     /// Values in use.
-    pub(crate) values: BTreeMap<&'static str, u64>,
+    pub values: BTreeMap<&'static str, u64>,
     /// Rejected deltas and values.
-    pub(crate) rejected: BTreeMap<&'static str, u64>,
+    pub rejected: BTreeMap<&'static str, u64>,
 }
 
 impl DeltaCounts {
     /// Adds the counts of others.
-    pub(crate) fn add(&mut self, other: &DeltaCounts) {
+    pub fn add(&mut self, other: &DeltaCounts) {
         for (mine, more) in [
             (&mut self.values, &other.values),
             (&mut self.rejected, &other.rejected),

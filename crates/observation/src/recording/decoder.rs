@@ -3,11 +3,10 @@
 use super::file_clock::FileClock;
 use super::lines::NumberedLines;
 use super::not_understood::NotUnderstood;
-use super::survey::Plan;
-use crate::input::delta_counts::DeltaCounts;
-use crate::input::readings::{readings, timestamp};
-use crate::input::signalk_delta::DeltaReader;
-use crate::instruments::{Observation, RECORDED_TIME, Reading, Source};
+use super::plan::{Plan, ROLL_OVER_MICROS};
+use crate::readings::{readings, timestamp};
+use crate::signalk::{DeltaCounts, DeltaReader};
+use crate::{Observation, RECORDED_TIME, Reading, Source};
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::lines::Line;
 use binnacle_nmea::recording::{LineFormat, Stamp, split};
@@ -16,34 +15,32 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 const MICROS_A_DAY: i64 = 86_400_000_000;
-/// Period of the week numbers of GPS (IS-GPS-200, 20.3.3.3.1.1).
-pub(super) const ROLL_OVER_MICROS: i64 = 1_024 * 7 * MICROS_A_DAY;
 /// Difference between logger and receiver within which their dates agree but for a roll-over.
-pub(super) const SAME_DATE_MICROS: i64 = 2 * MICROS_A_DAY;
+const SAME_DATE_MICROS: i64 = 2 * MICROS_A_DAY;
 /// Age beyond which a value of a delta is a server's cached one.
 const CACHED_AFTER_S: f64 = 10.0;
 
 /// Observation of a recording.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Recorded {
+pub struct Recorded {
     /// Time of its line, once the recording has given one.
-    pub(crate) at: Option<Timestamp>,
+    pub at: Option<Timestamp>,
     /// Observation.
-    pub(crate) seen: Observation,
+    pub seen: Observation,
 }
 
 /// Roll-over of the weeks of GPS that was corrected.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct RollOver {
+pub struct RollOver {
     /// First date as the receiver gave it.
-    pub(crate) stated: Timestamp,
-    /// The same, corrected.
-    pub(crate) corrected: Timestamp,
+    pub stated: Timestamp,
+    /// Corrected date.
+    pub corrected: Timestamp,
 }
 
 /// Decoder of one recording.
 #[derive(Debug)]
-pub(crate) struct Decoder {
+pub struct Decoder {
     lines: NumberedLines,
     reader: LineReader,
 }
@@ -72,7 +69,7 @@ struct LineReader {
 
 impl Decoder {
     /// Creates a decoder of a recording that a survey has planned.
-    pub(crate) fn new(input: Arc<str>, plan: Plan) -> Decoder {
+    pub fn new(input: Arc<str>, plan: Plan) -> Decoder {
         Decoder {
             lines: NumberedLines::default(),
             reader: LineReader {
@@ -94,41 +91,41 @@ impl Decoder {
     }
 
     /// Decodes the lines that a chunk completes.
-    pub(crate) fn chunk(&mut self, chunk: &[u8]) {
+    pub fn chunk(&mut self, chunk: &[u8]) {
         let reader = &mut self.reader;
         self.lines
             .push(chunk, |number, line| reader.line(number, line));
     }
 
     /// Decodes the last line, whose end may be missing.
-    pub(crate) fn finish(&mut self) {
+    pub fn finish(&mut self) {
         let reader = &mut self.reader;
         self.lines.finish(|number, line| reader.line(number, line));
     }
 
     /// Takes the observations so far.
-    pub(crate) fn take_recorded(&mut self) -> Vec<Recorded> {
+    pub fn take_recorded(&mut self) -> Vec<Recorded> {
         let room = Vec::with_capacity(self.reader.out.len());
         std::mem::replace(&mut self.reader.out, room)
     }
 
     /// Takes the counts of sentences so far.
-    pub(crate) fn take_tally(&mut self) -> Tally {
+    pub fn take_tally(&mut self) -> Tally {
         std::mem::take(&mut self.reader.tally)
     }
 
     /// Takes the counts of Signal K values so far.
-    pub(crate) fn take_values(&mut self) -> DeltaCounts {
+    pub fn take_values(&mut self) -> DeltaCounts {
         std::mem::take(&mut self.reader.values)
     }
 
     /// Takes the lines so far that were not understood.
-    pub(crate) fn take_not_understood(&mut self) -> NotUnderstood {
+    pub fn take_not_understood(&mut self) -> NotUnderstood {
         std::mem::take(&mut self.reader.not_understood)
     }
 
     /// Returns the roll-over that was corrected, if there was one.
-    pub(crate) fn roll_over(&self) -> Option<RollOver> {
+    pub fn roll_over(&self) -> Option<RollOver> {
         self.reader.roll_over
     }
 }
@@ -197,7 +194,7 @@ impl LineReader {
         for seen in self.deltas.read(&text, &mut counts) {
             self.delta_value(number, content, seen);
         }
-        for (reason, _) in &counts.rejected {
+        for reason in counts.rejected.keys() {
             self.not_understood.add(reason, number, content);
         }
         self.values.add(&counts);

@@ -10,37 +10,33 @@ use std::fmt;
 use std::net::IpAddr;
 use std::sync::Arc;
 
-/// Talker of the agent's own sentences by default. Sources without a configured talker never match
-/// its headings.
-pub(crate) const AGENT_TALKER: [u8; 2] = *b"II";
-
 /// Talker of a magnetic compass: its true heading is made of its magnetic one.
 const MAGNETIC_COMPASS_TALKER: [u8; 2] = *b"HC";
 
 /// Source of an observation.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct Source {
+pub struct Source {
     /// Configured name of the input.
-    pub(crate) input: Arc<str>,
+    pub input: Arc<str>,
     /// Talker (`HC`, `HE`, `GP` …); `SK` for Signal K.
-    pub(crate) talker: [u8; 2],
+    pub talker: [u8; 2],
     /// Sentence (`HDG`, `THS` …), given to Signal K values by their meaning.
-    pub(crate) sentence: [u8; 3],
+    pub sentence: [u8; 3],
     /// Signal K: `$source`.
-    pub(crate) signalk: Option<Arc<str>>,
+    pub signalk: Option<Arc<str>>,
     /// TAG block: `s:`, in IEC 61162-450 the system function (`HE0001`).
-    pub(crate) sfi: Option<Arc<str>>,
+    pub sfi: Option<Arc<str>>,
     /// Datagrams: address of the sender.
-    pub(crate) sender: Option<IpAddr>,
+    pub sender: Option<IpAddr>,
     /// NMEA 2000: address on the bus.
-    pub(crate) n2k_address: Option<Address>,
+    pub n2k_address: Option<Address>,
     /// NMEA 2000: NAME of the device, which keeps it when its address changes.
-    pub(crate) n2k_name: Option<Name>,
+    pub n2k_name: Option<Name>,
 }
 
 impl Source {
     /// Creates the source of a sentence from a line that names nothing else.
-    pub(crate) fn of_sentence(input: Arc<str>, talker: [u8; 2], sentence: [u8; 3]) -> Source {
+    pub fn of_sentence(input: Arc<str>, talker: [u8; 2], sentence: [u8; 3]) -> Source {
         Source {
             input,
             talker,
@@ -54,7 +50,7 @@ impl Source {
     }
 
     /// Returns whether both are one device, whatever the sentences.
-    pub(crate) fn is_same_device(&self, other: &Source) -> bool {
+    pub fn is_same_device(&self, other: &Source) -> bool {
         if self.input != other.input {
             return false;
         }
@@ -70,7 +66,7 @@ impl Source {
     }
 
     /// Returns the order of two devices, the same on every start.
-    pub(crate) fn device_order(&self, other: &Source) -> Ordering {
+    pub fn device_order(&self, other: &Source) -> Ordering {
         let key = |source: &Source| {
             (
                 source.signalk.clone(),
@@ -86,7 +82,7 @@ impl Source {
 
     /// Returns whether the path names one device. A talker alone does not, for multiplexers give
     /// one to all; that of a magnetic compass does.
-    pub(crate) fn names_device(&self) -> bool {
+    pub fn names_device(&self) -> bool {
         self.signalk.is_some()
             || self.sfi.is_some()
             || self.n2k_address.is_some()
@@ -95,12 +91,12 @@ impl Source {
     }
 
     /// Returns the sentence as text.
-    pub(crate) fn sentence_text(&self) -> String {
+    pub fn sentence_text(&self) -> String {
         String::from_utf8_lossy(&self.sentence).into_owned()
     }
 
     /// Returns the talker as text.
-    pub(crate) fn talker_text(&self) -> String {
+    pub fn talker_text(&self) -> String {
         String::from_utf8_lossy(&self.talker).into_owned()
     }
 }

@@ -9,9 +9,9 @@
 //! Values that a server computes are ignored: a true heading made of a magnetic one is no reference
 //! for the compass. Other vessels are ignored too.
 
-use super::delta_counts::DeltaCounts;
-use super::signalk_value::{difference_deg, direction_deg, read_standalone};
-use crate::instruments::{Observation, Reading, Source};
+use super::counts::DeltaCounts;
+use super::value::{difference_deg, direction_deg, read_standalone};
+use crate::{Observation, Reading, Source};
 use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, Variation};
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::n2k::{Address, Name};
@@ -22,7 +22,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Paths to subscribe to.
-pub(super) const PATHS: [&str; 13] = [
+pub const PATHS: [&str; 13] = [
     "navigation.headingCompass",
     "navigation.headingMagnetic",
     "navigation.headingTrue",
@@ -53,7 +53,7 @@ const OWN_SHIP_PATHS: [&str; 3] = [
 
 /// Reader of one connection's messages.
 #[derive(Debug)]
-pub(super) struct DeltaReader {
+pub struct DeltaReader {
     input: Arc<str>,
     /// `vessels.urn:…`, once the server has identified itself.
     own_ship: Option<String>,
@@ -106,7 +106,8 @@ struct PathValue<'a> {
 }
 
 impl DeltaReader {
-    pub(super) fn new(input: Arc<str>) -> DeltaReader {
+    /// Creates a reader of a connection.
+    pub fn new(input: Arc<str>) -> DeltaReader {
         DeltaReader {
             input,
             own_ship: None,
@@ -116,7 +117,7 @@ impl DeltaReader {
     }
 
     /// Creates a reader of a recording.
-    pub(super) fn of_recording(input: Arc<str>) -> DeltaReader {
+    pub fn of_recording(input: Arc<str>) -> DeltaReader {
         DeltaReader {
             infers_own_ship: true,
             ..DeltaReader::new(input)
@@ -124,7 +125,7 @@ impl DeltaReader {
     }
 
     /// Returns the observations of one message; unused parts are counted.
-    pub(super) fn read(&mut self, text: &str, counts: &mut DeltaCounts) -> Vec<Observation> {
+    pub fn read(&mut self, text: &str, counts: &mut DeltaCounts) -> Vec<Observation> {
         let mut out = Vec::new();
         let Ok(message) = serde_json::from_str::<Message<'_>>(text) else {
             counts.reject("bad delta");

@@ -10,17 +10,17 @@ const EXAMPLE_BYTES: usize = 80;
 
 /// Lines of one recording that were not understood, by reason.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct NotUnderstood(BTreeMap<&'static str, Rejections>);
+pub struct NotUnderstood(BTreeMap<&'static str, Rejections>);
 
 /// Lines that were not understood for one reason.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub(crate) struct Rejections {
+pub struct Rejections {
     /// Number of times.
-    pub(crate) count: u64,
+    pub count: u64,
     /// Number of the first line.
-    pub(crate) line: u64,
+    pub line: u64,
     /// First line, as far as it is shown.
-    pub(crate) example: String,
+    pub example: String,
 }
 
 impl NotUnderstood {
@@ -38,14 +38,14 @@ impl NotUnderstood {
     }
 
     /// Iterates over the reasons.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (&'static str, &Rejections)> {
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &Rejections)> {
         self.0
             .iter()
             .map(|(reason, rejections)| (*reason, rejections))
     }
 
     /// Returns whether a reason is that of a whole sentence or value which the agent does not use.
-    pub(crate) fn is_of_no_use(reason: &str) -> bool {
+    pub fn is_of_no_use(reason: &str) -> bool {
         reason == Rejected::UnknownSentence.reason()
             || matches!(
                 reason,

@@ -13,28 +13,28 @@ use binnacle_compass::time::Timestamp;
 use binnacle_nmea::sentence::Acn;
 
 /// Talker and sentence of a time that the recording gave, not an instrument.
-pub(crate) const RECORDED_TIME: ([u8; 2], [u8; 3]) = (*b"--", *b"LOG");
+pub const RECORDED_TIME: ([u8; 2], [u8; 3]) = (*b"--", *b"LOG");
 
 /// Returns whether an observation is the time that a recording gives its lines.
-pub(crate) fn is_recorded_time(seen: &Observation) -> bool {
+pub fn is_recorded_time(seen: &Observation) -> bool {
     (seen.source.talker, seen.source.sentence) == RECORDED_TIME
 }
 
 /// One reading from one source.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Observation {
+pub struct Observation {
     /// Source.
-    pub(crate) source: Source,
+    pub source: Source,
     /// Time at which the reading was measured, as its source states it (Signal K `timestamp`, TAG
     /// block `c:`).
-    pub(crate) stated: Option<Timestamp>,
+    pub stated: Option<Timestamp>,
     /// Content of the sentence.
-    pub(crate) reading: Reading,
+    pub reading: Reading,
 }
 
 impl Observation {
     /// Creates an observation that states no time: it was measured when it arrives.
-    pub(crate) fn now(source: Source, reading: Reading) -> Observation {
+    pub fn now(source: Source, reading: Reading) -> Observation {
         Observation {
             source,
             stated: None,
@@ -45,7 +45,7 @@ impl Observation {
 
 /// Readings that the agent uses.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Reading {
+pub enum Reading {
     /// HDG: the sensor's own reading, with its deviation and variation.
     Compass {
         /// Before deviation.
