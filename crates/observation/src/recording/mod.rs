@@ -8,6 +8,10 @@
 //!   receivers in the recording.
 //! - Each line that was not understood is counted by reason, with the number of the first.
 //! - No bytes cause a panic, and memory is bounded for any file.
+//!
+//! Another format of lines is a variant of `LineFormat` with its start in
+//! `binnacle_nmea::recording`, and an arm with its parser in `LineReader::line`. A format without
+//! lines is another reader behind [`Decoder::chunk`].
 
 mod decoder;
 mod file_clock;
