@@ -15,6 +15,7 @@ fn main() -> Result<ExitCode> {
         Command::Migrate(database) => command::migrate(&database),
         Command::Admin(admin) => command::admin(admin),
         Command::Bursts(arguments) => command::bursts(&arguments),
+        Command::Import(arguments) => command::import(&arguments),
         Command::Openapi => command::openapi(),
         Command::Field(arguments) => command::field(&arguments),
         Command::Fit(arguments) => command::fit(&arguments),

@@ -29,6 +29,8 @@ pub enum Command {
     Admin(Admin),
     /// Store batches that were sent as short-burst messages
     Bursts(Bursts),
+    /// Store the samples of recordings in a vessel's log
+    Import(Import),
     /// Print the OpenAPI document
     Openapi,
     /// Print the earth's field at a place and time as JSON
@@ -178,6 +180,25 @@ pub struct Bursts {
     /// complete
     #[arg(required = true)]
     pub messages: Vec<PathBuf>,
+}
+
+/// Arguments of `import`.
+///
+/// A sample that the log has already is not stored again, so the command may be repeated.
+#[derive(Debug, Args)]
+pub struct Import {
+    /// Database to use.
+    #[command(flatten)]
+    pub database: Database,
+    /// Vessel that made the recordings
+    #[arg(long)]
+    pub vessel: Uuid,
+    /// Compass that was recorded; the vessel's first one by default
+    #[arg(long)]
+    pub compass: Option<Uuid>,
+    /// Samples as CSV, as `binnacle-agent replay --csv` writes them
+    #[arg(required = true)]
+    pub files: Vec<PathBuf>,
 }
 
 /// Arguments of `schedule`.

@@ -6,10 +6,10 @@
 
 mod admin;
 mod analyse;
-mod bursts;
 mod deviation;
 mod field;
 mod fit;
+mod ingest;
 mod input;
 mod logbook;
 mod operate;
@@ -21,10 +21,10 @@ mod verify_evidence;
 
 pub use admin::admin;
 pub use analyse::analyse;
-pub use bursts::bursts;
 pub use deviation::deviation;
 pub use field::field;
 pub use fit::fit;
+pub use ingest::{Import, ImportedSamples, bursts, import, import_samples};
 pub use operate::{migrate, openapi, run, serve};
 pub use plan::plan;
 pub use schedule::schedule;

@@ -16,7 +16,6 @@ mod fleet_prior;
 mod ingest;
 mod logbook;
 mod overview;
-mod short_bursts;
 mod vessels;
 
 use binnacle_server_testing::program;

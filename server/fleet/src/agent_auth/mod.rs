@@ -10,6 +10,9 @@ use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{AgentId, CompassId, VesselId};
 use binnacle_platform::secret;
 
+/// Version of the agent whose streams hold imported recordings. It is no program.
+pub const IMPORT_VERSION: &str = "import";
+
 /// A vessel's agent.
 #[derive(Clone, Copy, Debug, sqlx::FromRow)]
 pub struct Agent {

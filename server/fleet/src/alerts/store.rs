@@ -5,7 +5,7 @@ use super::cause::Cause;
 use super::causes::Source;
 use super::desired::DesiredAlert;
 use super::requests::Filter;
-use crate::agent_auth::Agent;
+use crate::agent_auth::{Agent, IMPORT_VERSION};
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{AlertId, CompassId, OperatorId, VesselId};
@@ -358,7 +358,8 @@ pub(super) struct LastUpload {
     pub(super) alerts: i64,
 }
 
-/// Lists the last upload for every compass with an agent, of vessels in service.
+/// Lists the last upload for every compass with an agent, of vessels in service. Imported
+/// recordings are no agent's uploads.
 pub(super) async fn last_uploads(db: &Db) -> DbResult<Vec<LastUpload>> {
     rows!(
         db,
@@ -369,10 +370,12 @@ pub(super) async fn last_uploads(db: &Db) -> DbResult<Vec<LastUpload>> {
                  WHERE a.vessel_id = s.vessel_id AND a.compass_id = s.compass_id
                    AND a.cause = 'silent_agent' AND a.holds) AS alerts
          FROM streams s
+         JOIN agents g ON g.vessel_id = s.vessel_id AND g.id = s.agent_id AND g.agent_version <> $1
          JOIN vessels v ON v.id = s.vessel_id AND v.out_of_service_at IS NULL
          LEFT JOIN vessel_settings w ON w.vessel_id = s.vessel_id
          GROUP BY s.vessel_id, s.compass_id
-         ORDER BY s.vessel_id, s.compass_id"
+         ORDER BY s.vessel_id, s.compass_id",
+        IMPORT_VERSION
     )
 }
 

@@ -131,14 +131,19 @@ async fn put_batch(
 }
 
 /// Result of a received batch.
-struct Received {
+#[derive(Debug)]
+pub struct Received {
     /// True if it was not stored before.
-    is_new: bool,
-    events_out: Vec<events::Event>,
+    pub is_new: bool,
+    /// Events to be published once the transaction is committed.
+    pub events_out: Vec<events::Event>,
 }
 
 /// Stores a batch with all its consequences, on whichever link it arrived.
-async fn store_batch(
+///
+/// # Errors
+/// Fails when the stream is not the agent's, or other bytes are stored under the batch's number.
+pub async fn store_batch(
     tx: &mut Tx,
     agent: Agent,
     batch: &Batch,

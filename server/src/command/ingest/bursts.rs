@@ -1,8 +1,8 @@
 //! `bursts`: imports batches that were sent as short-burst messages, one per file.
 
-use super::operate::block_on;
-use super::{BadInput, json, print_result};
 use crate::cli::Bursts;
+use crate::command::operate::block_on;
+use crate::command::{BadInput, json, print_result};
 use crate::subscriptions::subscribers;
 use anyhow::{Context, Result};
 use binnacle_fleet::ingest::{self, ShortBurst};

@@ -1,5 +1,8 @@
 //! Ingest of batches: each stored once, none lost, none altered.
 
+mod imports;
+mod short_bursts;
+
 use binnacle_platform::db::Pools;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{
