@@ -1,6 +1,7 @@
 //! Merge of recordings by the times of their lines.
 //!
-//! Lines of one recording keep their order. A recording is opened when its first time is reached
+//! Lines of one recording keep their order. At equal times positions go first, then compasses, so
+//! that the order in which recordings are given changes nothing. A recording is opened when its first time is reached
 //! and closed at its end, so that a year of them needs few open files.
 
 use super::planning::Planned;
@@ -8,7 +9,9 @@ use anyhow::Context;
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::Tally;
 use binnacle_observation::Observation;
-use binnacle_observation::recording::{NotUnderstood, Recorded, RecordingReader, RollOver};
+use binnacle_observation::recording::{
+    Instruments, NotUnderstood, Recorded, RecordingReader, RollOver,
+};
 use binnacle_observation::signalk::DeltaCounts;
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -24,6 +27,9 @@ pub(super) struct Finished {
     /// Reason why it ended before its end.
     pub(super) problem: Option<String>,
 }
+
+/// Time, instruments and place among the open recordings.
+type Turn = (Option<Timestamp>, Instruments, usize);
 
 /// An open recording, with the observations that wait for their turn.
 struct Open {
@@ -53,16 +59,16 @@ pub(super) fn merge(
             open.extend(planned.pop_front().map(Open::new).transpose()?);
             continue;
         }
-        let Some(place) = (0..open.len()).min_by_key(|place| open[*place].time()) else {
+        let turn = |place: usize| open[place].turn(place);
+        let Some(place) = (0..open.len()).min_by_key(|place| turn(*place)) else {
             return Ok(finished);
         };
-        // At equal times the recording that was opened first goes first.
-        let others = open.iter().enumerate().filter(|(other, _)| *other != place);
-        let turns = others.map(|(other, recording)| (recording.time(), other));
-        let until = turns.chain(next.map(|start| (start, usize::MAX))).min();
+        let others = (0..open.len()).filter(|other| *other != place);
+        let next = next.map(|start| (start, Instruments::Others, usize::MAX));
+        let until = others.map(turn).chain(next).min();
         let recording = &mut open[place];
         while !recording.waiting.is_empty()
-            && until.is_none_or(|until| (recording.time(), place) < until)
+            && until.is_none_or(|until| recording.turn(place) < until)
         {
             if let Some(recorded) = recording.waiting.pop_front() {
                 each(&recorded.seen);
@@ -101,6 +107,11 @@ impl Open {
             .front()
             .and_then(|recorded| recorded.at)
             .or(self.planned.start)
+    }
+
+    /// Returns the order in which recordings take turns.
+    fn turn(&self, place: usize) -> Turn {
+        (self.time(), self.planned.instruments, place)
     }
 
     /// Reads until something waits. Returns whether something does.

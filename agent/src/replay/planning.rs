@@ -4,7 +4,7 @@
 use anyhow::Context;
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::recording::DateOrder;
-use binnacle_observation::recording::{LoggerClock, Plan, Survey};
+use binnacle_observation::recording::{Instruments, LoggerClock, Plan, Survey};
 use std::path::{Path, PathBuf};
 
 /// Difference between the errors of clocks that are one logger's.
@@ -19,6 +19,7 @@ pub(super) struct Planned {
     pub(super) start: Option<Timestamp>,
     /// Set if a logger gave its lines their times.
     pub(super) is_stamped: bool,
+    pub(super) instruments: Instruments,
 }
 
 /// Surveys recordings and returns them in the order of their first times.
@@ -43,7 +44,12 @@ pub(super) fn plan(files: &[PathBuf], roll_overs: i64) -> anyhow::Result<Vec<Pla
     let mut planned: Vec<Planned> = planned
         .map(|(path, survey)| common.planned(path, survey, roll_overs))
         .collect();
-    planned.sort_by_key(|recording| recording.start);
+    planned.sort_by(|one, other| {
+        let key = |recording: &Planned| (recording.start, recording.instruments);
+        key(one)
+            .cmp(&key(other))
+            .then_with(|| one.path.cmp(&other.path))
+    });
     Ok(planned)
 }
 
@@ -98,6 +104,7 @@ impl Common {
             plan,
             start: survey.first.map(|first| first.plus_seconds(-error_s)),
             is_stamped: survey.is_stamped,
+            instruments: survey.instruments,
         }
     }
 }

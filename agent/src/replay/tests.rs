@@ -104,9 +104,9 @@ fn files_of_one_instrument_each_give_the_samples_of_one_file() {
             })
         };
         let files = [
-            instrument("gps.raw", rmc),
-            instrument("hdg.raw", compass),
             instrument("gyro.raw", gyro),
+            instrument("hdg.raw", compass),
+            instrument("gps.raw", rmc),
         ];
         let merged = run(&files).unwrap();
         assert_eq!(merged.samples, whole.samples, "{:?}", merged.notes);

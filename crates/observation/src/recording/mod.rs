@@ -29,4 +29,4 @@ pub use decoder::{Decoder, Recorded, RollOver};
 pub use not_understood::{NotUnderstood, Rejections};
 pub use plan::Plan;
 pub use reader::{Chunk, RecordingReader};
-pub use survey::{LoggerClock, Survey};
+pub use survey::{Instruments, LoggerClock, Survey};

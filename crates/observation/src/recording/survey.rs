@@ -34,6 +34,19 @@ pub enum LoggerClock {
     Ahead(i64),
 }
 
+/// Instruments of a recording, in the order in which readings of one time belong: a reference is
+/// compared with the compass's reading of its own time, at the position of that time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Instruments {
+    /// Position, perhaps among others.
+    Position,
+    /// Compass without a position.
+    Compass,
+    /// Others alone.
+    #[default]
+    Others,
+}
+
 /// Findings about a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct Survey {
@@ -45,6 +58,8 @@ pub struct Survey {
     pub is_stamped: bool,
     /// First time, as the logger or else the receiver gives it.
     pub first: Option<Timestamp>,
+    /// Instruments that were recorded.
+    pub instruments: Instruments,
 }
 
 /// Reading of the beginning of a recording with one order of dates.
@@ -53,6 +68,7 @@ struct Pass {
     stamps: u64,
     logger: Option<Timestamp>,
     first: Option<Timestamp>,
+    instruments: Instruments,
     differences: Vec<i64>,
 }
 
@@ -79,6 +95,7 @@ impl Survey {
             clock: pass.logger_clock(),
             is_stamped: pass.stamps > 0,
             first: pass.first,
+            instruments: pass.instruments,
         })
     }
 
@@ -125,6 +142,12 @@ impl Pass {
     }
 
     fn add(&mut self, recorded: &Recorded) {
+        let instruments = match recorded.seen.reading {
+            Reading::Fix { .. } => Instruments::Position,
+            Reading::Compass { .. } | Reading::Magnetic { .. } => Instruments::Compass,
+            _ => Instruments::Others,
+        };
+        self.instruments = self.instruments.min(instruments);
         let (Reading::Time(at) | Reading::Fix { time: Some(at), .. }) = recorded.seen.reading
         else {
             return;
