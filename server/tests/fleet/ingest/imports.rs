@@ -29,7 +29,7 @@ async fn import(server: &TestServer, vessel: &str, samples: &[Sample]) -> Import
     let now = server.app.clock.now().into();
     let mut last = None;
     let imported = import_samples(&server.app.db, import, now, |progress| {
-        last = Some(progress)
+        last = Some(progress);
     });
     let imported = imported.await.unwrap();
     assert_eq!(last, Some(imported), "the last progress is the result");
