@@ -88,14 +88,12 @@ pub(crate) fn deviation(
     } else {
         white
     };
-    match &row.course {
-        Some(course) => deviation_by_course(row, mean, course, variance),
-        None => {
-            let reference = Reference::mixed(row, share);
-            let of_reference = reference_part(row, white, level * level);
-            deviation_by(row, mean, reference, variance, of_reference)
-        }
+    if let Some(course) = &row.course {
+        return deviation_by_course(row, mean, course, variance);
     }
+    let reference = Reference::mixed(row, share);
+    let of_reference = reference_part(row, white, level * level);
+    deviation_by(row, mean, reference, variance, of_reference)
 }
 
 /// Returns the reference's part of a row's white noise.
