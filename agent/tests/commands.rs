@@ -57,7 +57,7 @@ async fn a_recording_becomes_a_table_and_a_tally() {
     assert_eq!(
         rows.next().unwrap(),
         // 55588 is the number of the source that any recording calls "HE THS".
-        "2026-09-01T00:13:30Z,43.50000,-3.00000,41.999,45.000,,12.00,0.00,0.057,60,\
+        "2026-09-01T00:13:30Z,43.53103,-2.95412,41.999,45.000,,12.00,0.00,0.057,60,\
          47.00,-0.60,1.50,18.0,55588,"
     );
     let tally: Value = serde_json::from_slice(&done.stderr).unwrap();
@@ -257,7 +257,7 @@ async fn what_was_said_in_each_second_can_be_exported_and_bad_questions_are_refu
     assert_eq!(table.lines().count(), 1 + 10, "{table}");
     assert_eq!(
         table.lines().nth(1),
-        Some("2026-09-01T00:06:30Z,43.5000000,-3.0000000,41.44,44.53,,12.00,0.0,-2.10")
+        Some("2026-09-01T00:06:30Z,43.5147766,-2.9781547,41.44,44.53,,12.00,0.0,-2.10")
     );
     let wrong = agent.call(&["export", "--from", "yesterday"]).await;
     assert_eq!(wrong.status.code(), Some(2));

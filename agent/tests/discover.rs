@@ -59,7 +59,7 @@ async fn a_recording_is_listed_and_its_proposed_roles_sample_it() {
     for wanted in [
         "# bridge HCHDG  1.0/s  compass ",
         "# bridge HETHS  1.0/s  true ",
-        "# bridge GPRMC  1.0/s  43.5000 -3.0000, course 4",
+        "# bridge GPRMC  1.0/s  43.6364 -2.7984, course 4",
     ] {
         assert!(said.contains(wanted), "{wanted:?} is not in\n{said}");
     }

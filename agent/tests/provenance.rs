@@ -4,8 +4,11 @@
 
 mod common;
 
-use binnacle_nmea::sentence::ThsMode;
-use binnacle_nmea::{Data, parse};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::time::Timestamp;
+use binnacle_nmea::sentence::{Position, Rmc, ThsMode};
+use binnacle_nmea::{Data, Sentence, parse, write};
 use common::agent::{Agent, Running};
 use common::bridge::{self, Bridge};
 use common::server::TestServer;
@@ -186,7 +189,9 @@ async fn a_transponder_without_the_letter_of_its_variation_gives_the_position() 
     bridge.sail();
     let running = Agent::new(bridge.address).run().await;
     let status = at_end(&running, seconds).await;
-    assert_eq!(status["position"]["lat"], 43.5);
+    let lat_deg = status["position"]["lat"].as_f64().unwrap();
+    let place = bridge::place(seconds - 1);
+    assert!((lat_deg - place.lat_deg_north).abs() < 1e-4, "{status}");
     running.kill().await;
 }
 
@@ -339,4 +344,123 @@ async fn what_a_server_repeats_on_connect_is_no_reading_of_now() {
     let alive_again = async { while status(&running).await["heading"]["compass_deg"].is_null() {} };
     timeout(PATIENCE, alive_again).await.unwrap();
     running.kill().await;
+}
+
+/// First and last second of a false track, 200 miles off.
+const SPOOFED_S: std::ops::Range<i64> = 2 * HOUR_S..3 * HOUR_S;
+
+/// A bridge whose receiver goes in circles elsewhere for an hour.
+async fn spoofed(seconds: i64) -> Bridge {
+    Bridge::playing(seconds, |offset_s| {
+        if !SPOOFED_S.contains(&offset_s) {
+            return bridge::second(offset_s);
+        }
+        let angle = offset_s as f64 / 60.0;
+        let (date, time) =
+            binnacle_nmea::time::from_unix_micros((bridge::START_S + offset_s) * 1_000_000)
+                .unwrap();
+        let rmc = Rmc {
+            time: Some(time),
+            date: Some(date),
+            position: Some(Position {
+                lat_deg_north: 40.2 + 0.01 * angle.cos(),
+                lon_deg_east: -3.0 + 0.01 * angle.sin(),
+            }),
+            sog_kn: Some(12.0),
+            ..Rmc::default()
+        };
+        let sentence = Sentence {
+            talker: *b"GP",
+            data: Data::Rmc(Some(rmc)),
+        };
+        let mut false_fix = Vec::new();
+        write(&sentence, &mut false_fix);
+        [changed(offset_s, &["$GPRMC"], &[]), false_fix].concat()
+    })
+    .await
+}
+
+fn miles(lat_deg: f64, lon_deg: f64, place: Position) -> f64 {
+    let north = (lat_deg - place.lat_deg_north) * 60.0;
+    let east = (lon_deg - place.lon_deg_east) * 60.0 * lat_deg.to_radians().cos();
+    north.hypot(east)
+}
+
+#[tokio::test]
+async fn a_spoofed_hour_is_an_alert_and_the_heading_goes_on_from_the_reckoned_place() {
+    let seconds = SPOOFED_S.end;
+    let bridge = spoofed(seconds).await;
+    let server = TestServer::start(Some(common::model()), None).await;
+    let agent = Agent::new(bridge.address);
+    agent.enrol(&server.url).await;
+    let running = agent.run().await;
+    let has_model = async { while status(&running).await["model"].is_null() {} };
+    timeout(PATIENCE, has_model).await.unwrap();
+    bridge.sail();
+    let status = at_end(&running, seconds).await;
+    let since = status["gnss_interference"]["since"].as_str();
+    assert!(
+        since.is_some_and(|since| since.starts_with("2026-09-01T02:00:0")),
+        "{status}"
+    );
+    let at = |name: &str| status["position"][name].as_f64().unwrap();
+    let off_nm = miles(at("lat"), at("lon"), bridge::place(seconds - 1));
+    assert!(off_nm < 2.0, "{off_nm}");
+    let heading = |name: &str| status["heading"][name].as_f64().unwrap();
+    let there = bridge::place(seconds - 1);
+    let there = binnacle_compass::position::Position::new(there.lat_deg_north, there.lon_deg_east);
+    let time = Timestamp::parse(status["ship_time"].as_str().unwrap()).unwrap();
+    let field = field(FieldModel::Igrf14, there.unwrap(), 0.0, time).unwrap();
+    let variation_deg = field.declination().degrees_east();
+    let true_deg = heading("compass_deg") + heading("deviation_deg") + variation_deg;
+    let error_deg = wrap_180(heading("true_deg") - true_deg).abs();
+    assert!(error_deg < heading("band95_deg"), "{status}");
+    let said = agent.call(&["status"]).await;
+    let said = String::from_utf8(said.stdout).unwrap();
+    assert!(
+        said.contains("GNSS interference since 01 Sep 02:00 UTC"),
+        "{said}"
+    );
+    running.kill().await;
+}
+
+#[tokio::test]
+async fn after_a_spoofed_hour_no_sample_is_wrong_and_everything_comes_back() {
+    let seconds = 4 * HOUR_S;
+    let bridge = spoofed(seconds).await;
+    let server = TestServer::start(None, None).await;
+    let agent = Agent::new(bridge.address);
+    agent.enrol(&server.url).await;
+    bridge.sail();
+    let running = agent.run().await;
+    let status = at_end(&running, seconds).await;
+    assert_eq!(status["gnss_interference"], Value::Null, "{status}");
+    let server_has = server.has(1);
+    running.terminate().await;
+    timeout(PATIENCE, server_has).await.unwrap();
+    let samples: Vec<_> = server
+        .decoded()
+        .into_iter()
+        .flat_map(|batch| batch.samples)
+        .collect();
+    let mut reckoned = 0;
+    for sample in &samples {
+        let offset_s = sample.time.micros() / 1_000_000 - bridge::START_S;
+        let place = bridge::place(offset_s);
+        let (lat, lon) = (sample.position.lat_deg(), sample.position.lon_deg());
+        assert!(miles(lat, lon, place) < 2.5, "{sample:?}");
+        assert_eq!(sample.position_reckoned, is_spoofed(offset_s), "{sample:?}");
+        reckoned += u32::from(sample.position_reckoned);
+    }
+    assert!(
+        reckoned >= 4 && samples.len() > 15,
+        "{reckoned} of {}",
+        samples.len()
+    );
+}
+
+/// Returns whether a time lies in the false track, or in the minutes until the true one is
+/// trusted again.
+fn is_spoofed(offset_s: i64) -> bool {
+    (SPOOFED_S.start..SPOOFED_S.end + 600).contains(&offset_s)
 }

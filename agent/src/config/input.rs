@@ -1,5 +1,6 @@
 //! `[inputs.NAME]`: one input, of exactly one kind.
 
+use super::n2k_input::{ActisenseConfig, YdwgConfig};
 use serde::Deserialize;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::path::{Path, PathBuf};
@@ -19,7 +20,13 @@ pub(crate) enum InputConfig {
     Multicast(Group),
     /// Connects to a Signal K server.
     SignalK(SignalKUrl),
-    /// Reads recorded sentences to their end.
+    /// Reads a CAN bus of the kernel, as `can0`.
+    SocketCan(String),
+    /// Reads NMEA 2000 from an Actisense gateway.
+    Actisense(ActisenseConfig),
+    /// Reads NMEA 2000 from a Yacht Devices gateway.
+    Ydwg(YdwgConfig),
+    /// Reads a recording to its end.
     File(PathBuf),
 }
 
@@ -39,6 +46,9 @@ impl InputConfig {
             InputConfig::Udp(_) => "udp",
             InputConfig::Multicast(_) => "multicast",
             InputConfig::SignalK(_) => "signalk",
+            InputConfig::SocketCan(_) => "socketcan",
+            InputConfig::Actisense(_) => "actisense",
+            InputConfig::Ydwg(_) => "ydwg",
             InputConfig::File(_) => "file",
         }
     }
@@ -52,6 +62,9 @@ struct InputTable {
     udp: Option<SocketAddr>,
     multicast: Option<Group>,
     signalk: Option<SignalKUrl>,
+    socketcan: Option<String>,
+    actisense: Option<ActisenseConfig>,
+    ydwg: Option<YdwgConfig>,
     file: Option<PathBuf>,
 }
 
@@ -65,6 +78,9 @@ impl TryFrom<InputTable> for InputConfig {
             table.udp.map(InputConfig::Udp),
             table.multicast.map(InputConfig::Multicast),
             table.signalk.map(InputConfig::SignalK),
+            table.socketcan.map(InputConfig::SocketCan),
+            table.actisense.map(InputConfig::Actisense),
+            table.ydwg.map(InputConfig::Ydwg),
             table.file.map(InputConfig::File),
         ]
         .into_iter()
@@ -79,8 +95,8 @@ impl TryFrom<InputTable> for InputConfig {
             .map(|[input]| input)
             .map_err(|_| {
                 format!(
-                    "an input has exactly one of serial, tcp, udp, multicast, signalk and file; \
-                     this one has {found}"
+                    "an input has exactly one of serial, tcp, udp, multicast, signalk, socketcan, \
+                     actisense, ydwg and file; this one has {found}"
                 )
             })
     }

@@ -7,6 +7,7 @@ mod alert;
 mod error;
 mod input;
 mod limits;
+mod n2k_input;
 mod profile;
 mod roles;
 mod silence;
@@ -17,6 +18,7 @@ pub(crate) use alert::AlertConfig;
 pub(crate) use alert::GyroError;
 pub(crate) use error::ConfigError;
 pub(crate) use input::{Group, HostPort, InputConfig, SerialConfig, SignalKUrl};
+pub(crate) use n2k_input::{ActisenseConfig, YdwgConfig};
 #[cfg(test)]
 pub(crate) use profile::max_burst_batch_bytes;
 pub(crate) use profile::{ConnectionPolicy, Profile, UploadPlan};

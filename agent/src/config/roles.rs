@@ -159,7 +159,8 @@ impl RolesConfig {
     }
 
     /// Returns the conventional talkers of each role. `SK` is Signal K, whose HDG is
-    /// `navigation.headingCompass`: the raw reading.
+    /// `navigation.headingCompass`: the raw reading. `N2` is NMEA 2000, where true headings are
+    /// satellite compasses' as a rule.
     pub(crate) fn usual() -> RolesConfig {
         let source = SourceConfig::usual;
         let of_any = |sentence| source(None, sentence);
@@ -169,9 +170,9 @@ impl RolesConfig {
                 .map(|talker| source(Some(talker), sentence))
                 .collect::<Vec<_>>()
         };
-        let satellite: [&[u8; 2]; 3] = [b"GP", b"GN", b"IN"];
+        let satellite: [&[u8; 2]; 4] = [b"GP", b"GN", b"IN", b"N2"];
         RolesConfig {
-            compass: of(&[b"HC", b"SK"], *b"HDG"),
+            compass: of(&[b"HC", b"SK", b"N2"], *b"HDG"),
             gyro: [of(&[b"HE"], *b"THS"), of(&[b"HE", b"SK"], *b"HDT")].concat(),
             satellite: [of(&satellite, *b"THS"), of(&satellite, *b"HDT")].concat(),
             position: vec![of_any(*b"RMC"), of_any(*b"GGA"), of_any(*b"GLL")],

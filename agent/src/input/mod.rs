@@ -13,6 +13,7 @@ mod pump;
 mod stats;
 
 mod file;
+mod n2k;
 mod serial;
 mod signalk;
 mod tcp;
@@ -74,6 +75,9 @@ async fn session(config: &InputConfig, link: &Link) -> io::Result<End> {
         InputConfig::Udp(address) => udp::unicast(*address, link).await,
         InputConfig::Multicast(group) => udp::multicast(group, link).await,
         InputConfig::SignalK(url) => signalk::session(url, link).await,
+        InputConfig::SocketCan(interface) => n2k::socketcan(interface, link).await,
+        InputConfig::Actisense(gateway) => n2k::actisense(gateway, link).await,
+        InputConfig::Ydwg(gateway) => n2k::ydwg(gateway, link).await,
         InputConfig::File(path) => file::session(path, link).await,
     }
 }

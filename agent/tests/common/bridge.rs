@@ -15,6 +15,8 @@ pub(crate) const START_S: i64 = 1_788_220_800;
 pub(crate) const LEAD_DEG: f64 = 3.0;
 /// Difference by which the course over ground is more than the heading.
 pub(crate) const DRIFT_DEG: f64 = 2.0;
+/// Speed over the ground.
+const SPEED_KN: f64 = 12.0;
 /// Noise of the compass, part of which lasts for twenty seconds.
 const NOISE_DEG: f64 = 0.2;
 /// Mean of the roll, its standard deviation, and the temperature of the air.
@@ -41,11 +43,8 @@ fn second_with(offset_s: i64, lead_deg: f64) -> Vec<u8> {
         Data::Rmc(Some(Rmc {
             time: Some(time),
             date: Some(date),
-            position: Some(Position {
-                lat_deg_north: 43.5,
-                lon_deg_east: -3.0,
-            }),
-            sog_kn: Some(12.0),
+            position: Some(place(offset_s)),
+            sog_kn: Some(SPEED_KN),
             cog_deg_true: Some(heading + DRIFT_DEG),
             ..Rmc::default()
         })),
@@ -108,6 +107,23 @@ fn share(number: i64) -> f64 {
 /// Heading at a time; it changes at once at the full hour.
 pub(crate) fn heading_deg(offset_s: i64) -> f64 {
     45.0 + 90.0 * (offset_s / 3600 % 4) as f64
+}
+
+/// Place at a time: the four courses lead back to where they began.
+pub(crate) fn place(offset_s: i64) -> Position {
+    let (mut north_nm, mut east_nm) = (0.0, 0.0);
+    let round = offset_s.rem_euclid(4 * 3600);
+    for leg in 0..4 {
+        let seconds = (round - leg * 3600).clamp(0, 3600);
+        let miles = SPEED_KN * seconds as f64 / 3600.0;
+        let (sin, cos) = (heading_deg(leg * 3600) + DRIFT_DEG).to_radians().sin_cos();
+        north_nm += miles * cos;
+        east_nm += miles * sin;
+    }
+    Position {
+        lat_deg_north: 43.5 + north_nm / 60.0,
+        lon_deg_east: -3.0 + east_nm / 60.0 / 43.5_f64.to_radians().cos(),
+    }
 }
 
 /// A TCP server that plays the voyage as fast as it is read. A new connection continues where the

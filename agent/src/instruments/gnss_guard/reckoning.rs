@@ -59,10 +59,10 @@ const UNKNOWN_SPEED_KN: f64 = 20.0;
 
 /// Speeds along the heading, and in any direction, knots.
 struct Speeds {
-    least_kn: f64,
-    likeliest_kn: f64,
-    most_kn: f64,
-    stray_kn: f64,
+    least: f64,
+    likeliest: f64,
+    most: f64,
+    stray: f64,
 }
 
 impl Motion {
@@ -75,16 +75,16 @@ impl Motion {
         };
         match self.headings_deg {
             [None, None] => Speeds {
-                least_kn: 0.0,
-                likeliest_kn: 0.0,
-                most_kn: 0.0,
-                stray_kn: STREAM_KN + most_kn,
+                least: 0.0,
+                likeliest: 0.0,
+                most: 0.0,
+                stray: STREAM_KN + most_kn,
             },
             _ => Speeds {
-                least_kn,
-                likeliest_kn,
-                most_kn,
-                stray_kn: STREAM_KN,
+                least: least_kn,
+                likeliest: likeliest_kn,
+                most: most_kn,
+                stray: STREAM_KN,
             },
         }
     }
@@ -133,15 +133,15 @@ impl Reckoning {
         {
             let (sin, cos) = heading.unwrap_or_default().to_radians().sin_cos();
             for (part, speed_kn) in [
-                (&mut run.least, speeds.least_kn),
-                (&mut run.likeliest, speeds.likeliest_kn),
-                (&mut run.most, speeds.most_kn),
+                (&mut run.least, speeds.least),
+                (&mut run.likeliest, speeds.likeliest),
+                (&mut run.most, speeds.most),
             ] {
                 part[0] += speed_kn * hours * cos;
                 part[1] += speed_kn * hours * sin;
             }
         }
-        self.stray_nm += speeds.stray_kn * hours;
+        self.stray_nm += speeds.stray * hours;
         self.seconds += seconds;
     }
 

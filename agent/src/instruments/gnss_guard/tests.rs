@@ -62,6 +62,7 @@ fn at(lat_deg: f64, lon_deg: f64) -> Position {
     Position::new(lat_deg, lon_deg).unwrap()
 }
 
+#[allow(clippy::unnecessary_wraps, reason = "a receiver may also be silent")]
 fn honest(_: u64, place: Position) -> Option<Position> {
     Some(place)
 }

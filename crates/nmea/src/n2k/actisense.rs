@@ -24,6 +24,8 @@ const HEADER_BYTES: usize = 11;
 const TIME_RECORD: u8 = 3;
 /// Microseconds from 1601 to 1970.
 const FROM_1601_MICROS: i64 = 11_644_473_600_000_000;
+/// Bytes of a recording in which the first message is looked for.
+const SEARCHED_BYTES: usize = 1024;
 /// Longest frame: command, length, content of 255 bytes, checksum.
 const MOST_BYTES: usize = 258;
 
@@ -51,6 +53,16 @@ enum State {
 }
 
 impl Decoder {
+    /// Makes the decoder of a recording by its first bytes; `None` if they are of no such one.
+    pub fn of_recording(first: &[u8]) -> Option<Decoder> {
+        if first.starts_with(&[ESC, SOH]) {
+            return Some(Decoder::of_ebl());
+        }
+        let first = &first[..first.len().min(SEARCHED_BYTES)];
+        let has_message = first.windows(3).any(|w| w == [DLE, STX, RECEIVED]);
+        has_message.then(Decoder::of_stream)
+    }
+
     /// Makes the decoder of a gateway's stream.
     pub fn of_stream() -> Decoder {
         Decoder::default()
@@ -77,8 +89,7 @@ impl Decoder {
         self.state = match (self.state, byte) {
             (State::Between, DLE) => State::BetweenAfterDle,
             (State::Between, ESC) if self.is_ebl => State::BetweenAfterEsc,
-            (State::Between, _) => State::Between,
-            (State::BetweenAfterDle, STX) | (State::FrameAfterDle, STX) => {
+            (State::BetweenAfterDle | State::FrameAfterDle, STX) => {
                 if self.state == State::FrameAfterDle {
                     self.damaged += 1;
                 }
@@ -89,7 +100,6 @@ impl Decoder {
                 self.buffer.clear();
                 State::Record
             }
-            (State::BetweenAfterDle | State::BetweenAfterEsc, _) => State::Between,
             (State::Frame, DLE) => State::FrameAfterDle,
             (State::FrameAfterDle, ETX) => {
                 self.state = State::Between;
@@ -114,7 +124,13 @@ impl Decoder {
             (State::Record, byte) | (State::RecordAfterEsc, byte @ ESC) => {
                 self.keep(byte, State::Record)
             }
-            (State::RecordAfterEsc, _) => State::Between,
+            (
+                State::Between
+                | State::BetweenAfterDle
+                | State::BetweenAfterEsc
+                | State::RecordAfterEsc,
+                _,
+            ) => State::Between,
         };
         None
     }
@@ -238,6 +254,13 @@ mod tests {
     }
 
     #[test]
+    fn a_recording_is_known_by_its_first_bytes() {
+        assert!(Decoder::of_recording(&frame()).is_some_and(|d| !d.is_ebl));
+        assert!(Decoder::of_recording(&[ESC, SOH, 3]).is_some_and(|d| d.is_ebl));
+        assert!(Decoder::of_recording(b"$HCHDG,98.3,1.5,W,12.6,E*53").is_none());
+    }
+
+    #[test]
     fn a_damaged_frame_is_counted_and_the_next_is_read() {
         let mut broken = frame();
         broken[12] ^= 1;
@@ -279,7 +302,8 @@ mod tests {
             data: vec![DLE; 8],
         };
         let bytes = write(&message);
-        assert_eq!(bytes.iter().filter(|byte| **byte == DLE).count(), 18);
+        let doubled = bytes[2..].windows(2).filter(|pair| *pair == [DLE, DLE]);
+        assert_eq!((bytes.len(), doubled.count()), (29, 15));
         let plain: Vec<u8> = bytes[2..10].iter().copied().chain([DLE; 8]).collect();
         let sum = plain.iter().fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
         assert_eq!(bytes[bytes.len() - 3], 0_u8.wrapping_sub(sum));

@@ -162,16 +162,12 @@ impl AddressClaim {
         let first = usize::from(self.address);
         let all = usize::from(ADDRESSES);
         let next = (0..all).map(|step| (first + step) % all);
-        match next.into_iter().find(|address| !self.taken[*address]) {
-            Some(address) => {
-                self.address = address as u8;
-                self.state = ClaimState::Claiming;
-            }
-            None => {
-                self.address = NO_ADDRESS;
-                self.state = ClaimState::Lost;
-            }
-        }
+        let free = next.into_iter().find(|address| !self.taken[*address]);
+        self.address = free.map_or(NO_ADDRESS, |address| address as u8);
+        self.state = match free {
+            Some(_) => ClaimState::Claiming,
+            None => ClaimState::Lost,
+        };
         Some(self.message())
     }
 

@@ -18,7 +18,7 @@ const IDENTIFIER_BITS: u32 = 0x1fff_ffff;
 pub struct Header {
     /// Priority, 0 (highest) to 7.
     pub priority: u8,
-    /// Number of the parameter group, 0 to 131,071.
+    /// Number of the parameter group: 0 to 131,071 on a bus.
     pub pgn: u32,
     /// Address of the sender.
     pub source: u8,

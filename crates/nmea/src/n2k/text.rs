@@ -14,8 +14,6 @@ use crate::time::{Date, TimeOfDay, unix_micros};
 
 /// Greatest number of bytes in a line: the longest message in hexadecimal with its header.
 const MOST_BYTES: usize = 223;
-/// Last number of a parameter group. Canboat has higher ones for messages of the gateway itself.
-const LAST_PGN: u32 = 0x1_ffff;
 
 /// Line of a recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -162,7 +160,8 @@ fn canboat(line: &str) -> Option<Line> {
     let data = data.filter(|data| data.len() == length)?;
     let header = Header {
         priority: u8::try_from(priority).ok().filter(|p| *p <= 7)?,
-        pgn: (pgn <= LAST_PGN).then_some(pgn)?,
+        // Higher numbers than a bus has are of the gateway itself.
+        pgn,
         source: u8::try_from(source).ok()?,
         destination: u8::try_from(destination).ok()?,
     };
@@ -181,7 +180,7 @@ fn ikonvert(rest: &str) -> Option<Line> {
     let data = base64(data)?;
     let header = Header {
         priority: priority.parse().ok()?,
-        pgn: pgn.parse().ok().filter(|pgn| *pgn <= LAST_PGN)?,
+        pgn: pgn.parse().ok()?,
         source: source.parse().ok()?,
         destination: destination.parse().ok()?,
     };
@@ -353,7 +352,6 @@ mod tests {
             "can0 09F112CC [9] FF",
             "can0 09F112CC [8] FF 4B ED FF 7F FF 7F FD 00",
             "2024-02-17T05:15:49.768Z,2,127250,204,255,8,ff",
-            "2024-02-17T05:15:49.768Z,2,262161,0,0,1,ff",
             "!PDGY,000000,4,,,1.0,",
             "05:15 R 09F112CC FF",
             "$HCHDG,98.3,1.5,W,12.6,E*53",

@@ -4,11 +4,13 @@ use super::file_clock::FileClock;
 use super::lines::NumberedLines;
 use super::not_understood::NotUnderstood;
 use super::plan::{Plan, ROLL_OVER_MICROS};
+use crate::n2k::N2kReader;
 use crate::readings::{readings, timestamp};
 use crate::signalk::{DeltaCounts, DeltaReader};
 use crate::{Observation, RECORDED_TIME, Reading, Source};
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::lines::Line;
+use binnacle_nmea::n2k::{self, actisense};
 use binnacle_nmea::recording::{LineFormat, Stamp, split};
 use binnacle_nmea::{Rejected, Tally};
 use std::borrow::Cow;
@@ -41,6 +43,9 @@ pub struct RollOver {
 /// Decoder of one recording.
 #[derive(Debug)]
 pub struct Decoder {
+    /// Decoder of a recording without lines; none for one with lines.
+    binary: Option<actisense::Decoder>,
+    has_begun: bool,
     lines: NumberedLines,
     reader: LineReader,
 }
@@ -51,6 +56,7 @@ struct LineReader {
     input: Arc<str>,
     plan: Plan,
     deltas: DeltaReader,
+    n2k: N2kReader,
     /// System function of the last TAG block, which many lines share.
     sfi: Option<Arc<str>>,
     clock: FileClock,
@@ -71,9 +77,12 @@ impl Decoder {
     /// Creates a decoder of a recording that a survey has planned.
     pub fn new(input: Arc<str>, plan: Plan) -> Decoder {
         Decoder {
+            binary: None,
+            has_begun: false,
             lines: NumberedLines::default(),
             reader: LineReader {
                 deltas: DeltaReader::of_recording(Arc::clone(&input)),
+                n2k: N2kReader::new(Arc::clone(&input)),
                 input,
                 near: plan.near,
                 plan,
@@ -92,9 +101,21 @@ impl Decoder {
 
     /// Decodes the lines that a chunk completes.
     pub fn chunk(&mut self, chunk: &[u8]) {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.binary = actisense::Decoder::of_recording(chunk);
+        }
         let reader = &mut self.reader;
-        self.lines
-            .push(chunk, |number, line| reader.line(number, line));
+        match &mut self.binary {
+            Some(binary) => binary.push(chunk, |stamp, message| {
+                reader.n2k(&n2k::text::Line {
+                    stamp,
+                    content: n2k::text::Content::Message(message),
+                });
+            }),
+            None => self
+                .lines
+                .push(chunk, |number, line| reader.line(number, line)),
+        }
     }
 
     /// Decodes the last line, whose end may be missing.
@@ -138,6 +159,10 @@ impl LineReader {
             self.not_understood.add(reason, number, b"");
             return;
         };
+        if let Some(line) = n2k::text::parse_line(line) {
+            self.n2k(&line);
+            return;
+        }
         let mut rest = line;
         while let Some(part) = split(rest, self.plan.order) {
             if let Some(at) = part.stamp.and_then(|stamp| self.time_of(stamp)) {
@@ -154,6 +179,31 @@ impl LineReader {
             self.tally.reject(Rejected::NotASentence);
             let reason = Rejected::NotASentence.reason();
             self.not_understood.add(reason, number, line);
+        }
+    }
+
+    /// Decodes a frame or message of NMEA 2000.
+    fn n2k(&mut self, line: &n2k::text::Line) {
+        let stamp = match line.stamp {
+            n2k::text::Stamp::Unix(micros) => Some(Stamp::Instant(micros)),
+            n2k::text::Stamp::OfDay(micros) => Some(Stamp::TimeOfDay(micros)),
+            n2k::text::Stamp::None | n2k::text::Stamp::Elapsed(_) => None,
+        };
+        if let Some(at) = stamp.and_then(|stamp| self.time_of(stamp)) {
+            self.is_stamped = true;
+            self.record_time(at);
+        }
+        let mut seen = Vec::new();
+        let keep = |observation| seen.push(observation);
+        match &line.content {
+            n2k::text::Content::Frame(frame) => self.n2k.frame(frame, &mut self.values, keep),
+            n2k::text::Content::Message(message) => {
+                self.n2k.message(message, &mut self.values, keep);
+            }
+        }
+        for seen in seen {
+            let reading = self.corrected(seen.reading);
+            self.push(Observation { reading, ..seen });
         }
     }
 

@@ -2,8 +2,9 @@
 //!
 //! Invariants:
 //!
-//! - Each line has one of the formats of [`binnacle_nmea::recording::LineFormat`], and each format
-//!   one parser in `decoder.rs`.
+//! - Each line is one of NMEA 2000 ([`binnacle_nmea::n2k::text`]) or has one of the formats of
+//!   [`binnacle_nmea::recording::LineFormat`], and each format one parser in `decoder.rs`. A
+//!   stream or EBL file of an Actisense gateway has no lines.
 //! - The time of a line is that which the logger gave it. Where it gave none, it is that of the
 //!   receivers in the recording.
 //! - Each line that was not understood is counted by reason, with the number of the first.

@@ -25,12 +25,12 @@ impl DeltaCounts {
     }
 
     /// Counts a value in use.
-    pub(super) fn count_value(&mut self, path: &'static str) {
+    pub(crate) fn count_value(&mut self, path: &'static str) {
         *self.values.entry(path).or_default() += 1;
     }
 
     /// Counts a rejected delta or value.
-    pub(super) fn reject(&mut self, reason: &'static str) {
+    pub fn reject(&mut self, reason: &'static str) {
         *self.rejected.entry(reason).or_default() += 1;
     }
 }
