@@ -1,5 +1,6 @@
 //! `[inputs.NAME]`: one input, of exactly one kind.
 
+use super::host_port::HostPort;
 use super::n2k_input::{ActisenseConfig, YdwgConfig};
 use serde::Deserialize;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
@@ -115,35 +116,6 @@ pub(crate) struct SerialConfig {
 
 fn standard_baud() -> u32 {
     4800
-}
-
-/// Host name or address, colon and port; resolved at each connection.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
-#[serde(try_from = "String")]
-pub(crate) struct HostPort(String);
-
-impl HostPort {
-    /// Returns the text as written.
-    pub(crate) fn as_str(&self) -> &str {
-        &self.0
-    }
-}
-
-impl TryFrom<String> for HostPort {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<HostPort, String> {
-        let good = text.rsplit_once(':').is_some_and(|(host, port)| {
-            !host.is_empty() && port.parse::<u16>().is_ok_and(|port| port > 0)
-        });
-        if good {
-            Ok(HostPort(text))
-        } else {
-            Err(format!(
-                "{text:?} is not a host and a port, as \"10.0.0.5:10110\""
-            ))
-        }
-    }
 }
 
 /// A multicast group, and the interface to join it on.

@@ -5,6 +5,7 @@
 
 mod alert;
 mod error;
+mod host_port;
 mod input;
 mod limits;
 mod n2k_input;
@@ -17,7 +18,8 @@ pub(crate) use alert::AlertConfig;
 #[cfg(test)]
 pub(crate) use alert::GyroError;
 pub(crate) use error::ConfigError;
-pub(crate) use input::{Group, HostPort, InputConfig, SerialConfig, SignalKUrl};
+pub(crate) use host_port::HostPort;
+pub(crate) use input::{Group, InputConfig, SerialConfig, SignalKUrl};
 pub(crate) use n2k_input::{ActisenseConfig, YdwgConfig};
 #[cfg(test)]
 pub(crate) use profile::max_burst_batch_bytes;

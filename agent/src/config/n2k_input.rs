@@ -1,6 +1,6 @@
 //! Gateways to an NMEA 2000 bus.
 
-use super::input::HostPort;
+use super::host_port::HostPort;
 use serde::Deserialize;
 use std::net::SocketAddr;
 

@@ -123,11 +123,6 @@ pub enum Data {
     },
 }
 
-/// Returns whether a parameter group comes in fast packets.
-pub(super) fn is_fast_packet(pgn: u32) -> bool {
-    matches!(pgn, 129_029 | 126_996)
-}
-
 impl Data {
     /// Reads a message; `None` for other groups, and where the value itself is not available.
     pub fn parse(message: &Message) -> Option<Data> {

@@ -3,7 +3,6 @@
 //! The first byte of each frame has a sequence number in its upper three bits and the frame's
 //! number in the lower five; the first frame's second byte is the length.
 
-use super::data;
 use super::frame::{Frame, Header, Message};
 
 /// Greatest length of a message.
@@ -35,7 +34,7 @@ impl Assembler {
     ///
     /// Frames of groups other than those of [`super::Data`] count as single ones.
     pub fn add(&mut self, frame: &Frame) -> Option<Message> {
-        if !data::is_fast_packet(frame.header.pgn) {
+        if !is_fast_packet(frame.header.pgn) {
             return Some(Message {
                 header: frame.header,
                 data: frame.data().to_vec(),
@@ -99,9 +98,14 @@ impl Assembler {
     }
 }
 
-/// Splits a message into its frames.
-pub(super) fn split(message: &Message, sequence: u8) -> Vec<Frame> {
-    if !data::is_fast_packet(message.header.pgn) {
+/// Returns whether a parameter group comes in fast packets.
+fn is_fast_packet(pgn: u32) -> bool {
+    matches!(pgn, 129_029 | 126_996)
+}
+
+/// Splits a message into its frames; `sequence` tells apart fast packets of one group.
+pub fn split(message: &Message, sequence: u8) -> Vec<Frame> {
+    if !is_fast_packet(message.header.pgn) {
         return Frame::new(message.header, &message.data)
             .into_iter()
             .collect();
@@ -150,14 +154,14 @@ mod tests {
     #[test]
     fn a_message_of_any_length_comes_back_from_its_frames() {
         for length in [0, 1, 6, 7, 13, 14, 43, 134, 223] {
-            let frames = message(length).frames(5);
+            let frames = split(&message(length), 5);
             assert_eq!(assembled(&frames), [message(length)], "{length}");
         }
     }
 
     #[test]
     fn a_lost_or_repeated_frame_loses_its_message_alone() {
-        let (one, two) = (message(43).frames(1), message(43).frames(2));
+        let (one, two) = (split(&message(43), 1), split(&message(43), 2));
         let with_loss: Vec<Frame> = one.iter().skip(1).chain(&two).copied().collect();
         assert_eq!(assembled(&with_loss).len(), 1);
         let gap: Vec<Frame> = [&one[..3], &one[4..], &two[..]].concat();
@@ -170,7 +174,7 @@ mod tests {
     fn messages_of_several_senders_may_be_mixed() {
         let mut other = message(43);
         other.header.source = 8;
-        let pairs = message(43).frames(0).into_iter().zip(other.frames(0));
+        let pairs = split(&message(43), 0).into_iter().zip(split(&other, 0));
         let mixed: Vec<Frame> = pairs.flat_map(|(a, b)| [a, b]).collect();
         assert_eq!(assembled(&mixed), [message(43), other]);
     }
@@ -181,7 +185,7 @@ mod tests {
         for pgn_source in 0..=250 {
             let mut first = message(43);
             first.header.source = pgn_source;
-            assembler.add(&first.frames(0)[0]);
+            assembler.add(&split(&first, 0)[0]);
         }
         assert_eq!(assembler.open.len(), MOST_OPEN);
     }

@@ -1,7 +1,5 @@
 //! Frames and messages, with the header that a CAN identifier carries.
 
-use super::fast_packet;
-
 /// Number of the parameter group of an address claim (ISO 11783-5).
 pub(super) const ADDRESS_CLAIM: u32 = 60_928;
 /// Number of the parameter group of a request (ISO 11783-3).
@@ -94,13 +92,6 @@ pub struct Message {
     pub header: Header,
     /// Content, at most 223 bytes.
     pub data: Vec<u8>,
-}
-
-impl Message {
-    /// Splits the message into frames; `sequence` tells apart fast packets of one group.
-    pub fn frames(&self, sequence: u8) -> Vec<Frame> {
-        fast_packet::split(self, sequence)
-    }
 }
 
 #[cfg(test)]

@@ -19,6 +19,6 @@ pub mod text;
 
 pub use claim::{AddressClaim, ClaimState, Device, request_claims};
 pub use data::{Data, FixMethod, Reference};
-pub use fast_packet::Assembler;
+pub use fast_packet::{Assembler, split};
 pub use frame::{Frame, Header, Message};
 pub use identity::{Address, Name};

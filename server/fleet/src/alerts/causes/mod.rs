@@ -10,7 +10,6 @@ mod deviation_over_limit;
 mod disturbances;
 mod evaluate;
 mod facts;
-mod gnss_interference;
 mod hysteresis;
 mod instruments;
 mod model_quality;

@@ -2,8 +2,8 @@
 
 use super::row::{CardEffect, CauseRow, PlanEffect};
 use super::{
-    adjustments, agent_link, agent_reports, deviation_over_limit, disturbances, gnss_interference,
-    instruments, model_quality, ship_changes,
+    adjustments, agent_link, agent_reports, deviation_over_limit, disturbances, instruments,
+    model_quality, ship_changes,
 };
 use crate::alerts::cause::Cause;
 
@@ -20,7 +20,7 @@ pub(in crate::alerts) static CAUSES: [CauseRow; 19] = [
     disturbances::LOCAL_ANOMALY,
     disturbances::MAGNETIC_STORM,
     disturbances::BERTH_STEEL,
-    gnss_interference::GNSS_INTERFERENCE,
+    disturbances::GNSS_INTERFERENCE,
     model_quality::NO_MODEL,
     model_quality::WIDE_BAND,
     adjustments::ADJUSTMENT_NOT_CONFIRMED,
