@@ -2,10 +2,10 @@
 
 use super::host_port::HostPort;
 use super::n2k_input::{ActisenseConfig, YdwgConfig};
+use super::signalk::SignalKConfig;
 use serde::Deserialize;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::path::{Path, PathBuf};
-use tokio_tungstenite::tungstenite::http::Uri;
 
 /// One input.
 #[derive(Clone, Debug, Deserialize)]
@@ -20,7 +20,7 @@ pub(crate) enum InputConfig {
     /// Joins an IEC 61162-450 transmission group.
     Multicast(Group),
     /// Connects to a Signal K server.
-    SignalK(SignalKUrl),
+    SignalK(SignalKConfig),
     /// Reads a CAN bus of the kernel, as `can0`.
     SocketCan(String),
     /// Reads NMEA 2000 from an Actisense gateway.
@@ -32,10 +32,13 @@ pub(crate) enum InputConfig {
 }
 
 impl InputConfig {
-    /// Makes paths relative to the configuration's directory.
-    pub(crate) fn resolve(&mut self, directory: &Path) {
-        if let InputConfig::File(path) = self {
-            *path = directory.join(&path);
+    /// Makes paths relative to the configuration's directory; what the input called `name` keeps
+    /// is in `data_dir`.
+    pub(crate) fn resolve(&mut self, directory: &Path, data_dir: &Path, name: &str) {
+        match self {
+            InputConfig::File(path) => *path = directory.join(&path),
+            InputConfig::SignalK(server) => server.resolve(directory, data_dir, name),
+            _ => {}
         }
     }
 
@@ -62,7 +65,7 @@ struct InputTable {
     tcp: Option<HostPort>,
     udp: Option<SocketAddr>,
     multicast: Option<Group>,
-    signalk: Option<SignalKUrl>,
+    signalk: Option<SignalKConfig>,
     socketcan: Option<String>,
     actisense: Option<ActisenseConfig>,
     ydwg: Option<YdwgConfig>,
@@ -160,41 +163,6 @@ impl TryFrom<GroupText> for Group {
     }
 }
 
-/// Address of a Signal K stream, `ws://…`.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
-#[serde(try_from = "String")]
-pub(crate) struct SignalKUrl(Uri);
-
-impl SignalKUrl {
-    /// Returns the whole address.
-    pub(crate) fn uri(&self) -> &Uri {
-        &self.0
-    }
-
-    /// Returns host and port to connect to.
-    pub(crate) fn host_port(&self) -> String {
-        let host = self
-            .0
-            .host()
-            .expect("the host was checked when it was made");
-        format!("{host}:{}", self.0.port_u16().unwrap_or(80))
-    }
-}
-
-impl TryFrom<String> for SignalKUrl {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<SignalKUrl, String> {
-        let wrong =
-            || format!("{text:?} is not an address as \"ws://10.0.0.5:3000/signalk/v1/stream\"");
-        let uri: Uri = text.parse().map_err(|_| wrong())?;
-        match (uri.scheme_str(), uri.host()) {
-            (Some("ws"), Some(host)) if !host.is_empty() => Ok(SignalKUrl(uri)),
-            _ => Err(wrong()),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -247,7 +215,7 @@ mod tests {
             ("multicast = \"192.168.1.1:60004\"", "192.168.1.1:60004"),
             ("multicast = 5", "239.192.0.4:60004"),
             ("signalk = \"http://host:3000/\"", "http://host:3000/"),
-            ("signalk = \"wss://host:3000/\"", "wss://host:3000/"),
+            ("signalk = \"https://host:3000/\"", "https://host:3000/"),
             ("signalk = \"ws:\"", "ws:"),
             ("serial = { path = \"/dev/x\", bauds = 1 }", "bauds"),
         ] {
@@ -259,7 +227,7 @@ mod tests {
     #[test]
     fn only_paths_of_files_follow_the_configuration() {
         let mut file = read("file = \"log.nmea\"").unwrap();
-        file.resolve(Path::new("/etc/binnacle"));
+        file.resolve(Path::new("/etc/binnacle"), Path::new("/var"), "log");
         assert!(
             matches!(&file, InputConfig::File(path) if path == Path::new("/etc/binnacle/log.nmea"))
         );

@@ -11,6 +11,7 @@ mod limits;
 mod n2k_input;
 mod profile;
 mod roles;
+mod signalk;
 mod silence;
 mod uplink;
 
@@ -19,12 +20,13 @@ pub(crate) use alert::AlertConfig;
 pub(crate) use alert::GyroError;
 pub(crate) use error::ConfigError;
 pub(crate) use host_port::HostPort;
-pub(crate) use input::{Group, InputConfig, SerialConfig, SignalKUrl};
+pub(crate) use input::{Group, InputConfig, SerialConfig};
 pub(crate) use n2k_input::{ActisenseConfig, YdwgConfig};
 #[cfg(test)]
 pub(crate) use profile::max_burst_batch_bytes;
 pub(crate) use profile::{ConnectionPolicy, Profile, UploadPlan};
 pub(crate) use roles::{RolesConfig, SourceConfig};
+pub(crate) use signalk::SignalKConfig;
 pub(crate) use silence::SilenceConfig;
 pub(crate) use uplink::{ModemConfig, UplinkConfig};
 
@@ -99,8 +101,8 @@ impl Config {
         if let Some(modem) = &mut config.modem {
             modem.resolve(directory);
         }
-        for input in config.inputs.values_mut() {
-            input.resolve(directory);
+        for (name, input) in &mut config.inputs {
+            input.resolve(directory, &config.data_dir, name);
         }
         Ok(config)
     }

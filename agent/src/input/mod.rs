@@ -16,6 +16,7 @@ mod file;
 mod n2k;
 mod serial;
 mod signalk;
+mod signalk_access;
 mod tcp;
 mod udp;
 
@@ -74,7 +75,7 @@ async fn session(config: &InputConfig, link: &Link) -> io::Result<End> {
         InputConfig::Tcp(address) => tcp::session(address, link).await,
         InputConfig::Udp(address) => udp::unicast(*address, link).await,
         InputConfig::Multicast(group) => udp::multicast(group, link).await,
-        InputConfig::SignalK(url) => signalk::session(url, link).await,
+        InputConfig::SignalK(server) => signalk::session(server, link).await,
         InputConfig::SocketCan(interface) => n2k::socketcan(interface, link).await,
         InputConfig::Actisense(gateway) => n2k::actisense(gateway, link).await,
         InputConfig::Ydwg(gateway) => n2k::ydwg(gateway, link).await,

@@ -1,29 +1,42 @@
 //! Deltas from a Signal K server over a WebSocket.
 
 use super::link::{CONNECT_TIMEOUT, End, Link, connect};
-use crate::config::SignalKUrl;
+use super::signalk_access::{Registration, tls};
+use crate::config::SignalKConfig;
 use binnacle_nmea::Tally;
 use binnacle_observation::signalk::{DeltaCounts, DeltaReader, PATHS};
 use futures_util::{SinkExt, StreamExt};
+use rustls::pki_types::ServerName;
 use serde_json::json;
 use std::io;
-use tokio_tungstenite::client_async_with_config;
-use tokio_tungstenite::tungstenite::Message;
+use std::sync::Arc;
+use tokio::io::{AsyncRead, AsyncWrite};
+use tokio_rustls::TlsConnector;
+use tokio_tungstenite::tungstenite::client::IntoClientRequest;
+use tokio_tungstenite::tungstenite::http::header::AUTHORIZATION;
+use tokio_tungstenite::tungstenite::http::{HeaderValue, StatusCode};
 use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
+use tokio_tungstenite::tungstenite::{Error, Message};
+use tokio_tungstenite::{WebSocketStream, client_async_with_config};
 
 /// Size limit of a message: deltas are some hundred bytes.
 const MAX_MESSAGE_BYTES: usize = 1024 * 1024;
 
-pub(super) async fn session(url: &SignalKUrl, link: &Link) -> io::Result<End> {
-    let stream = connect(&url.host_port()).await?;
-    let limits = WebSocketConfig::default()
-        .max_message_size(Some(MAX_MESSAGE_BYTES))
-        .max_frame_size(Some(MAX_MESSAGE_BYTES));
-    let handshake = client_async_with_config(url.uri(), stream, Some(limits));
-    let (mut socket, _) = tokio::time::timeout(CONNECT_TIMEOUT, handshake)
-        .await
-        .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "the handshake timed out"))?
-        .map_err(io::Error::other)?;
+/// Stream of a plain or an encrypted connection.
+trait Connection: AsyncRead + AsyncWrite + Unpin + Send {}
+
+impl<T: AsyncRead + AsyncWrite + Unpin + Send> Connection for T {}
+
+pub(super) async fn session(config: &SignalKConfig, link: &Link) -> io::Result<End> {
+    let mut registration = Registration::load(config);
+    let token = registration.token(config);
+    let mut socket = match open(config, token).await? {
+        Opened::Socket(socket) => *socket,
+        Opened::Refused => {
+            registration.obtain_token(config, link).await?;
+            return Ok(End::Closed);
+        }
+    };
     socket
         .send(Message::text(subscription()))
         .await
@@ -46,6 +59,49 @@ pub(super) async fn session(url: &SignalKUrl, link: &Link) -> io::Result<End> {
         }
     }
     Ok(End::Closed)
+}
+
+/// Result of a handshake.
+enum Opened {
+    Socket(Box<WebSocketStream<Box<dyn Connection>>>),
+    /// The server wants another token, or one at all.
+    Refused,
+}
+
+async fn open(config: &SignalKConfig, token: Option<&str>) -> io::Result<Opened> {
+    let stream = connect(&config.url.host_port()).await?;
+    let stream: Box<dyn Connection> = if config.url.is_secure() {
+        let host = ServerName::try_from(config.url.host().to_owned()).map_err(io::Error::other)?;
+        let connector = TlsConnector::from(Arc::new(tls(config)?));
+        Box::new(connector.connect(host, stream).await?)
+    } else {
+        Box::new(stream)
+    };
+    let mut request = config
+        .url
+        .uri()
+        .into_client_request()
+        .map_err(io::Error::other)?;
+    if let Some(token) = token {
+        let value = HeaderValue::try_from(format!("Bearer {token}")).map_err(io::Error::other)?;
+        request.headers_mut().insert(AUTHORIZATION, value);
+    }
+    let limits = WebSocketConfig::default()
+        .max_message_size(Some(MAX_MESSAGE_BYTES))
+        .max_frame_size(Some(MAX_MESSAGE_BYTES));
+    let handshake = client_async_with_config(request, stream, Some(limits));
+    let opened = tokio::time::timeout(CONNECT_TIMEOUT, handshake)
+        .await
+        .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "the handshake timed out"))?;
+    match opened {
+        Ok((socket, _)) => Ok(Opened::Socket(Box::new(socket))),
+        Err(Error::Http(response)) if is_refusal(response.status()) => Ok(Opened::Refused),
+        Err(error) => Err(io::Error::other(error)),
+    }
+}
+
+fn is_refusal(status: StatusCode) -> bool {
+    matches!(status, StatusCode::UNAUTHORIZED | StatusCode::FORBIDDEN)
 }
 
 /// Returns the request for the paths in use, sent as soon as they change.

@@ -30,7 +30,13 @@ struct Input {
 
 impl Input {
     fn start(toml: &str, room: usize) -> Input {
-        let config: InputConfig = toml::from_str(toml).expect("the configuration is sound");
+        Input::of(
+            toml::from_str(toml).expect("the configuration is sound"),
+            room,
+        )
+    }
+
+    fn of(config: InputConfig, room: usize) -> Input {
         let (tx, observations) = mpsc::channel(room);
         let stats = Arc::new(InputStats::default());
         let shutdown = CancellationToken::new();
@@ -268,6 +274,108 @@ async fn a_signal_k_server_is_asked_and_followed_over_a_restart() {
     let status = input.stats.status();
     assert_eq!(status.rejected["bad delta"], 2);
     assert_eq!(status.sentences["navigation.headingCompass"], 2);
+    input.stop().await;
+}
+
+/// Request that a Signal K server with security gets: its first line, and whether it has the token.
+async fn peek_request(stream: &tokio::net::TcpStream) -> (String, bool) {
+    let mut head = vec![0; 4096];
+    loop {
+        let count = stream.peek(&mut head).await.unwrap();
+        let text = String::from_utf8_lossy(&head[..count]).into_owned();
+        if text.contains("\r\n\r\n") {
+            let has_token = text
+                .to_lowercase()
+                .contains("authorization: bearer the-token");
+            return (text.lines().next().unwrap().to_owned(), has_token);
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_signal_k_server_with_security_is_asked_for_access_once() {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let address = listener.local_addr().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let url = format!("signalk = \"ws://{address}/signalk/v1/stream\"");
+    let mut config: InputConfig = toml::from_str(&url).unwrap();
+    config.resolve(folder.path(), folder.path(), "sk");
+    let mut input = Input::of(config.clone(), 8);
+    let mut requests = Vec::new();
+    let admitted = loop {
+        let (mut stream, _) = listener.accept().await.unwrap();
+        let (line, has_token) = peek_request(&stream).await;
+        requests.push(line.clone());
+        let (status, body) = match line.as_str() {
+            line if line.starts_with("POST") => {
+                let body = r#"{"state":"PENDING","requestId":"7","href":"/signalk/v1/requests/7"}"#;
+                ("202 Accepted", body)
+            }
+            line if line.starts_with("GET /signalk/v1/requests/7") => {
+                let body = r#"{"state":"COMPLETED","statusCode":200,
+                    "accessRequest":{"permission":"APPROVED","token":"the-token"}}"#;
+                ("200 OK", body)
+            }
+            _ if has_token => break accept_async(stream).await.unwrap(),
+            _ => ("401 Unauthorized", ""),
+        };
+        let response = format!(
+            "HTTP/1.1 {status}\r\ncontent-type: application/json\r\ncontent-length: {}\r\n\
+             connection: close\r\n\r\n{body}",
+            body.len()
+        );
+        stream.write_all(response.as_bytes()).await.unwrap();
+        // What the client still sends is read, so that the response is not lost with a reset.
+        tokio::io::copy(&mut stream, &mut tokio::io::sink())
+            .await
+            .ok();
+    };
+    let posts = requests.iter().filter(|line| line.starts_with("POST"));
+    assert_eq!(posts.count(), 1, "{requests:?}");
+    input.until(|status| status.connected).await;
+    input.stop().await;
+    drop(admitted);
+    // The token serves after a restart.
+    input = Input::of(config, 8);
+    let (stream, _) = listener.accept().await.unwrap();
+    assert!(peek_request(&stream).await.1);
+    input.stop().await;
+}
+
+#[tokio::test]
+async fn a_signal_k_server_is_read_over_tls() {
+    let certified = rcgen::generate_simple_self_signed(vec!["localhost".to_owned()]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("sk.pem"), certified.cert.pem()).unwrap();
+    let key = rustls::pki_types::PrivateKeyDer::try_from(certified.signing_key.serialize_der());
+    let tls = rustls::ServerConfig::builder_with_provider(std::sync::Arc::new(
+        rustls::crypto::ring::default_provider(),
+    ))
+    .with_safe_default_protocol_versions()
+    .unwrap()
+    .with_no_client_auth()
+    .with_single_cert(vec![certified.cert.der().clone()], key.unwrap())
+    .unwrap();
+    let listener = TcpListener::bind("localhost:0").await.unwrap();
+    let port = listener.local_addr().unwrap().port();
+    let toml = format!(
+        "signalk = {{ url = \"wss://localhost:{port}/signalk/v1/stream\", ca = \"sk.pem\" }}"
+    );
+    let mut config: InputConfig = toml::from_str(&toml).unwrap();
+    config.resolve(folder.path(), folder.path(), "sk");
+    rustls::crypto::ring::default_provider()
+        .install_default()
+        .ok();
+    let mut input = Input::of(config, 8);
+    let (stream, _) = listener.accept().await.unwrap();
+    let acceptor = tokio_rustls::TlsAcceptor::from(Arc::new(tls));
+    let mut server = accept_async(acceptor.accept(stream).await.unwrap())
+        .await
+        .unwrap();
+    let text = r#"{"context":"vessels.self","updates":[{"$source":"n2k.204","values":[
+        {"path":"navigation.headingCompass","value":1.0}]}]}"#;
+    server.send(Message::text(text)).await.unwrap();
+    assert_eq!(&input.next().await[0].source.sentence, b"HDG");
     input.stop().await;
 }
 
