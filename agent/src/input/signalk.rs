@@ -10,6 +10,7 @@ use rustls::pki_types::ServerName;
 use serde_json::json;
 use std::io;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio_rustls::TlsConnector;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
@@ -19,6 +20,8 @@ use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
 use tokio_tungstenite::tungstenite::{Error, Message};
 use tokio_tungstenite::{WebSocketStream, client_async_with_config};
 
+/// Silence after which a server is asked whether it wants a token.
+const SILENCE: Duration = Duration::from_millis(if cfg!(test) { 100 } else { 5_000 });
 /// Size limit of a message: deltas are some hundred bytes.
 const MAX_MESSAGE_BYTES: usize = 1024 * 1024;
 
@@ -43,7 +46,24 @@ pub(super) async fn session(config: &SignalKConfig, link: &Link) -> io::Result<E
         .map_err(io::Error::other)?;
     link.opened();
     let mut deltas = DeltaReader::new(link.name.clone());
-    while let Some(message) = socket.next().await {
+    let mut is_admitted = registration.token(config).is_some();
+    loop {
+        let next = if is_admitted {
+            socket.next().await
+        } else if let Ok(next) = tokio::time::timeout(SILENCE, socket.next()).await {
+            next
+        } else {
+            // A server with security greets strangers, and sends them nothing.
+            if registration.needs_token(config).await? {
+                registration.obtain_token(config, link).await?;
+                return Ok(End::Closed);
+            }
+            is_admitted = true;
+            continue;
+        };
+        let Some(message) = next else {
+            return Ok(End::Closed);
+        };
         let message = message.map_err(io::Error::other)?;
         link.stats.count_received(message.len(), &Tally::default());
         match message {
@@ -51,6 +71,7 @@ pub(super) async fn session(config: &SignalKConfig, link: &Link) -> io::Result<E
                 let mut counts = DeltaCounts::default();
                 let observations = deltas.read(&text, &mut counts);
                 link.stats.count_values(&counts);
+                is_admitted |= !counts.values.is_empty();
                 link.deliver(observations).await?;
             }
             Message::Binary(_) => link.stats.reject("bad delta"),
@@ -58,7 +79,6 @@ pub(super) async fn session(config: &SignalKConfig, link: &Link) -> io::Result<E
             Message::Ping(_) | Message::Pong(_) | Message::Frame(_) => {}
         }
     }
-    Ok(End::Closed)
 }
 
 /// Result of a handshake.

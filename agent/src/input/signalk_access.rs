@@ -21,6 +21,8 @@ use uuid::Uuid;
 
 /// Path of the requests.
 const REQUESTS: &str = "/signalk/v1/access/requests";
+/// Path of the vessel's data.
+const SELF: &str = "/signalk/v1/api/vessels/self";
 /// Pause between looks at a request.
 const POLL: Duration = Duration::from_secs(5);
 /// Pause after a request was denied.
@@ -82,6 +84,16 @@ impl Registration {
         config.token.as_deref().or(self.token.as_deref())
     }
 
+    /// Returns whether the server gives nothing to those without a token.
+    pub(super) async fn needs_token(&self, config: &SignalKConfig) -> io::Result<bool> {
+        let response = client(config)?.get(config.url.rest(SELF)).send().await;
+        let status = response.map_err(io::Error::other)?.status();
+        Ok(matches!(
+            status,
+            StatusCode::UNAUTHORIZED | StatusCode::FORBIDDEN
+        ))
+    }
+
     /// Asks for a token and waits until the server's administrator has decided.
     pub(super) async fn obtain_token(
         &mut self,
@@ -92,6 +104,7 @@ impl Registration {
             return Err(io::Error::other("the server refuses the token"));
         }
         self.token = None;
+        self.store(config)?;
         let http = client(config)?;
         if self.request.is_none() {
             self.request = Some(self.send_request(config, &http).await?);

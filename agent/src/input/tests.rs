@@ -301,7 +301,7 @@ async fn a_signal_k_server_with_security_is_asked_for_access_once() {
     let mut config: InputConfig = toml::from_str(&url).unwrap();
     config.resolve(folder.path(), folder.path(), "sk");
     let mut input = Input::of(config.clone(), 8);
-    let mut requests = Vec::new();
+    let (mut requests, mut strangers) = (Vec::new(), Vec::new());
     let admitted = loop {
         let (mut stream, _) = listener.accept().await.unwrap();
         let (line, has_token) = peek_request(&stream).await;
@@ -317,6 +317,14 @@ async fn a_signal_k_server_with_security_is_asked_for_access_once() {
                 ("200 OK", body)
             }
             _ if has_token => break accept_async(stream).await.unwrap(),
+            line if line.starts_with("GET /signalk/v1/stream") => {
+                // As the real server does: it greets strangers, and sends them nothing.
+                let mut server = accept_async(stream).await.unwrap();
+                let greeting = r#"{"name":"server","version":"2.0.0"}"#;
+                server.send(Message::text(greeting)).await.unwrap();
+                strangers.push(server);
+                continue;
+            }
             _ => ("401 Unauthorized", ""),
         };
         let response = format!(
