@@ -8,7 +8,6 @@ mod run;
 
 mod config;
 
-mod input;
 mod instruments;
 
 mod acquisition;

@@ -1,9 +1,9 @@
 //! The command `discover`: what is heard, and roles for it.
 
 use crate::acquisition::Acquisition;
-use crate::config::{Config, InputConfig};
+use crate::config::Config;
 use crate::discovery::Discovery;
-use crate::input::{self, InputStats};
+use binnacle_input::{InputConfig, InputStats};
 use binnacle_wire::messages::Settings;
 use std::io::Write;
 use std::sync::Arc;
@@ -28,7 +28,7 @@ pub(super) async fn discover(config: Config, listen: Duration, json: bool) -> an
     for (name, input) in config.inputs {
         let stats = Arc::new(InputStats::default());
         inputs.push((name.clone(), Arc::clone(&stats)));
-        input::spawn(name.into(), input, tx.clone(), stats, shutdown.clone());
+        binnacle_input::spawn(name.into(), input, tx.clone(), stats, shutdown.clone());
     }
     // Recordings end; other inputs do not.
     drop(tx);

@@ -5,13 +5,9 @@
 
 mod alert;
 mod error;
-mod host_port;
-mod input;
 mod limits;
-mod n2k_input;
 mod profile;
 mod roles;
-mod signalk;
 mod silence;
 mod uplink;
 
@@ -19,17 +15,14 @@ pub(crate) use alert::AlertConfig;
 #[cfg(test)]
 pub(crate) use alert::GyroError;
 pub(crate) use error::ConfigError;
-pub(crate) use host_port::HostPort;
-pub(crate) use input::{Group, InputConfig, SerialConfig};
-pub(crate) use n2k_input::{ActisenseConfig, YdwgConfig};
 #[cfg(test)]
 pub(crate) use profile::max_burst_batch_bytes;
 pub(crate) use profile::{ConnectionPolicy, Profile, UploadPlan};
 pub(crate) use roles::{RolesConfig, SourceConfig};
-pub(crate) use signalk::SignalKConfig;
 pub(crate) use silence::SilenceConfig;
 pub(crate) use uplink::{ModemConfig, UplinkConfig};
 
+use binnacle_input::InputConfig;
 use binnacle_output::config::OutputConfig;
 use error::Problem;
 #[cfg(test)]

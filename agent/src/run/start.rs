@@ -4,8 +4,7 @@ use super::{Agent, CHANNEL_CAPACITY, Unstored};
 use crate::acquisition::Acquisition;
 use crate::alert::{AlarmSentence, AlertMonitor, DifferenceMonitor};
 use crate::clock;
-use crate::config::{Config, InputConfig};
-use crate::input::{self, InputStats};
+use crate::config::Config;
 use crate::page::{self, PageState};
 use crate::raw_log::RawLog;
 use crate::sampler::Tally;
@@ -14,6 +13,7 @@ use crate::spool::Spool;
 use crate::status::Status;
 use crate::uplink;
 use anyhow::Context;
+use binnacle_input::{InputConfig, InputStats};
 use binnacle_output::{AlertSentences, HeadingSentences, Outputs};
 use std::sync::Arc;
 use tokio::sync::{mpsc, watch};
@@ -77,7 +77,7 @@ impl Agent {
         for (name, input) in config.inputs {
             let stats = Arc::new(InputStats::default());
             inputs.push((name.clone(), stats.clone()));
-            input::spawn(name.into(), input, tx.clone(), stats, shutdown.clone());
+            binnacle_input::spawn(name.into(), input, tx.clone(), stats, shutdown.clone());
         }
         let page = page.map(|address| address.to_string());
         let output = outputs.tcp_address.map(|address| address.to_string());

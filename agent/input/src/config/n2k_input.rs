@@ -7,7 +7,7 @@ use std::net::SocketAddr;
 /// Actisense NGT-1, or what speaks as it does.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(try_from = "ActisenseTable")]
-pub(crate) enum ActisenseConfig {
+pub enum ActisenseConfig {
     /// At a serial port.
     Serial {
         /// Device, as `/dev/ttyUSB0`.
@@ -49,7 +49,7 @@ impl TryFrom<ActisenseTable> for ActisenseConfig {
 /// Yacht Devices gateway, or what speaks its RAW protocol.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(try_from = "YdwgTable")]
-pub(crate) enum YdwgConfig {
+pub enum YdwgConfig {
     /// Connects to the gateway.
     Tcp(HostPort),
     /// Receives its datagrams at this address.

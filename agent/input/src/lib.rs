@@ -7,6 +7,8 @@
 //!   the channel is full. Datagrams cannot wait; those that do not fit are counted.
 //! - Every line that is not used is counted by reason.
 
+pub mod config;
+
 mod decode;
 mod link;
 mod pump;
@@ -23,9 +25,9 @@ mod udp;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use stats::{InputStats, InputStatus};
+pub use config::InputConfig;
+pub use stats::{InputStats, InputStatus};
 
-use crate::config::InputConfig;
 use binnacle_observation::Observation;
 use link::{Backoff, End, Link};
 use std::io;
@@ -35,7 +37,7 @@ use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
 /// Reads an input until `shutdown`, until the end of a file, or until the receiver is gone.
-pub(crate) fn spawn(
+pub fn spawn(
     name: Arc<str>,
     config: InputConfig,
     tx: mpsc::Sender<Vec<Observation>>,

@@ -7,14 +7,15 @@ use tokio_tungstenite::tungstenite::http::Uri;
 /// Signal K server to read.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(try_from = "SignalKForm")]
-pub(crate) struct SignalKConfig {
-    pub(crate) url: SignalKUrl,
+pub struct SignalKConfig {
+    /// Address of its stream.
+    pub url: SignalKUrl,
     /// Token; without one the agent asks for access where the server wants that.
-    pub(crate) token: Option<String>,
+    pub token: Option<String>,
     /// PEM file with the authority, or the certificate itself, of a server that signs its own.
-    pub(crate) ca: Option<PathBuf>,
+    pub ca: Option<PathBuf>,
     /// File with the agent's registration at the server.
-    pub(crate) registration: Option<PathBuf>,
+    pub registration: Option<PathBuf>,
 }
 
 #[derive(Deserialize)]
@@ -71,7 +72,7 @@ impl SignalKConfig {
 
 /// Address of a Signal K stream, `ws://…` or `wss://…`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct SignalKUrl(Uri);
+pub struct SignalKUrl(Uri);
 
 impl SignalKUrl {
     fn parse(text: &str) -> Result<SignalKUrl, String> {
@@ -88,29 +89,29 @@ impl SignalKUrl {
     }
 
     /// Returns the whole address.
-    pub(crate) fn uri(&self) -> &Uri {
+    pub fn uri(&self) -> &Uri {
         &self.0
     }
 
     /// Returns whether the connection is encrypted.
-    pub(crate) fn is_secure(&self) -> bool {
+    pub fn is_secure(&self) -> bool {
         self.0.scheme_str() == Some("wss")
     }
 
     /// Returns the host.
-    pub(crate) fn host(&self) -> &str {
+    pub fn host(&self) -> &str {
         let host = self.0.host();
         host.expect("the host was checked when it was made")
     }
 
     /// Returns host and port to connect to.
-    pub(crate) fn host_port(&self) -> String {
+    pub fn host_port(&self) -> String {
         let usual = if self.is_secure() { 443 } else { 80 };
         format!("{}:{}", self.host(), self.0.port_u16().unwrap_or(usual))
     }
 
     /// Returns the address of a path of the server's REST interface.
-    pub(crate) fn rest(&self, path: &str) -> String {
+    pub fn rest(&self, path: &str) -> String {
         let scheme = if self.is_secure() { "https" } else { "http" };
         format!("{scheme}://{}{path}", self.host_port())
     }

@@ -17,13 +17,13 @@ const MAX_DATAGRAMS_AT_ONCE: usize = 64;
 /// Receive buffer for bursts while the agent is busy.
 const RECEIVE_BUFFER_BYTES: usize = 1024 * 1024;
 
-pub(super) async fn unicast(address: SocketAddr, link: &Link) -> io::Result<End> {
+pub(crate) async fn unicast(address: SocketAddr, link: &Link) -> io::Result<End> {
     let socket = Socket::new(Domain::for_address(address), Type::DGRAM, None)?;
     socket.bind(&address.into())?;
     receive(socket, Decoder::plain_datagram, link).await
 }
 
-pub(super) async fn multicast(group: &Group, link: &Link) -> io::Result<End> {
+pub(crate) async fn multicast(group: &Group, link: &Link) -> io::Result<End> {
     let socket = Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::UDP))?;
     // Others on this machine may listen to the same group.
     socket.set_reuse_address(true)?;

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// Decoder of one connection's bytes; a new connection needs a new one.
 #[derive(Debug)]
-pub(super) struct Decoder {
+pub(crate) struct Decoder {
     lines: Lines,
     reader: Reader,
 }
@@ -26,7 +26,7 @@ struct Reader {
 }
 
 impl Decoder {
-    pub(super) fn new(input: Arc<str>) -> Decoder {
+    pub(crate) fn new(input: Arc<str>) -> Decoder {
         Decoder {
             lines: Lines::default(),
             reader: Reader {
@@ -40,30 +40,30 @@ impl Decoder {
     }
 
     /// Decodes the lines that a chunk completes.
-    pub(super) fn chunk(&mut self, chunk: &[u8]) {
+    pub(crate) fn chunk(&mut self, chunk: &[u8]) {
         let reader = &mut self.reader;
         self.lines.push(chunk, |line| reader.line(line));
     }
 
     /// Decodes the last line, whose end may be missing.
-    pub(super) fn finish(&mut self) {
+    pub(crate) fn finish(&mut self) {
         let reader = &mut self.reader;
         self.lines.finish(|line| reader.line(line));
     }
 
     /// Sets the sender of the datagram that follows.
-    pub(super) fn set_sender(&mut self, sender: IpAddr) {
+    pub(crate) fn set_sender(&mut self, sender: IpAddr) {
         self.reader.sender = Some(sender);
     }
 
     /// Decodes a datagram of plain sentences.
-    pub(super) fn plain_datagram(&mut self, bytes: &[u8]) {
+    pub(crate) fn plain_datagram(&mut self, bytes: &[u8]) {
         self.chunk(bytes);
         self.finish();
     }
 
     /// Decodes an IEC 61162-450 datagram.
-    pub(super) fn tagged_datagram(&mut self, bytes: &[u8]) {
+    pub(crate) fn tagged_datagram(&mut self, bytes: &[u8]) {
         match datagram::lines(bytes) {
             Ok(lines) => lines.for_each(|line| self.reader.line(Line::Whole(line))),
             Err(rejected) => self.reader.tally.reject(rejected),
@@ -71,13 +71,13 @@ impl Decoder {
     }
 
     /// Takes the observations so far.
-    pub(super) fn take_observations(&mut self) -> Vec<Observation> {
+    pub(crate) fn take_observations(&mut self) -> Vec<Observation> {
         let room = Vec::with_capacity(self.reader.out.len());
         std::mem::replace(&mut self.reader.out, room)
     }
 
     /// Takes the counts so far.
-    pub(super) fn take_tally(&mut self) -> Tally {
+    pub(crate) fn take_tally(&mut self) -> Tally {
         std::mem::take(&mut self.reader.tally)
     }
 }

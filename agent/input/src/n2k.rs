@@ -84,7 +84,7 @@ impl Decoder {
     }
 }
 
-pub(super) async fn actisense(config: &ActisenseConfig, link: &Link) -> io::Result<End> {
+pub(crate) async fn actisense(config: &ActisenseConfig, link: &Link) -> io::Result<End> {
     let decoder = Decoder::new(Form::Actisense(actisense::Decoder::of_stream()), link);
     match config {
         ActisenseConfig::Serial { path, baud } => {
@@ -100,7 +100,7 @@ pub(super) async fn actisense(config: &ActisenseConfig, link: &Link) -> io::Resu
     }
 }
 
-pub(super) async fn ydwg(config: &YdwgConfig, link: &Link) -> io::Result<End> {
+pub(crate) async fn ydwg(config: &YdwgConfig, link: &Link) -> io::Result<End> {
     let decoder = Decoder::new(Form::Ydwg(Lines::default()), link);
     match config {
         YdwgConfig::Tcp(address) => {
@@ -144,7 +144,7 @@ async fn datagrams(address: SocketAddr, mut decoder: Decoder, link: &Link) -> io
     }
 }
 
-pub(super) async fn socketcan(interface: &str, link: &Link) -> io::Result<End> {
+pub(crate) async fn socketcan(interface: &str, link: &Link) -> io::Result<End> {
     let socket = CanSocket::open(interface)?;
     link.opened();
     frames(socket, link).await
@@ -205,7 +205,7 @@ fn read_frames(socket: &CanSocket, tx: &mpsc::Sender<io::Result<CanFrame>>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::InputStats;
+    use crate::InputStats;
     use binnacle_nmea::n2k::Address;
     use binnacle_observation::Reading;
     use std::os::fd::OwnedFd;

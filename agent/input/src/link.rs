@@ -10,7 +10,7 @@ use tokio::sync::mpsc;
 use tokio::sync::mpsc::error::TrySendError;
 
 /// Timeout of a connection attempt.
-pub(super) const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
+pub(crate) const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Receive buffer of a connection: a minute of a busy bridge. The system's default would hold tens
 /// of megabytes, days of a voyage that is replayed fast, all lost if the agent is killed.
@@ -21,7 +21,7 @@ const MAX_PAUSE: Duration = Duration::from_secs(10);
 
 /// Reason for the end of a session without an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum End {
+pub(crate) enum End {
     /// The file was read to its end.
     Finished,
     /// The other side closed the connection.
@@ -30,14 +30,14 @@ pub(super) enum End {
 
 /// Connection of one input to the agent.
 #[derive(Debug)]
-pub(super) struct Link {
-    pub(super) name: Arc<str>,
-    pub(super) stats: Arc<InputStats>,
+pub(crate) struct Link {
+    pub(crate) name: Arc<str>,
+    pub(crate) stats: Arc<InputStats>,
     tx: mpsc::Sender<Vec<Observation>>,
 }
 
 impl Link {
-    pub(super) fn new(
+    pub(crate) fn new(
         name: Arc<str>,
         tx: mpsc::Sender<Vec<Observation>>,
         stats: Arc<InputStats>,
@@ -45,24 +45,24 @@ impl Link {
         Link { name, stats, tx }
     }
 
-    pub(super) fn opened(&self) {
+    pub(crate) fn opened(&self) {
         tracing::info!(input = %self.name, "input is open");
         self.stats.opened();
     }
 
-    pub(super) fn closed(&self, why: &str) {
+    pub(crate) fn closed(&self, why: &str) {
         if self.stats.closed(why) {
             tracing::warn!(input = %self.name, why, "input is closed");
         }
     }
 
     /// Returns whether the receiver of the observations is gone.
-    pub(super) fn is_receiver_closed(&self) -> bool {
+    pub(crate) fn is_receiver_closed(&self) -> bool {
         self.tx.is_closed()
     }
 
     /// Delivers observations, waiting while the channel is full.
-    pub(super) async fn deliver(&self, observations: Vec<Observation>) -> io::Result<()> {
+    pub(crate) async fn deliver(&self, observations: Vec<Observation>) -> io::Result<()> {
         if observations.is_empty() {
             return Ok(());
         }
@@ -76,7 +76,7 @@ impl Link {
     }
 
     /// Delivers observations, or drops and counts them when the channel is full.
-    pub(super) fn offer(&self, observations: Vec<Observation>) -> io::Result<()> {
+    pub(crate) fn offer(&self, observations: Vec<Observation>) -> io::Result<()> {
         if observations.is_empty() {
             return Ok(());
         }
@@ -99,7 +99,7 @@ fn receiver_closed() -> io::Error {
 
 /// Connects, with a timeout, and with keep-alives for peers that vanish silently: their power may
 /// fail at sea.
-pub(super) async fn connect(host_port: &str) -> io::Result<TcpStream> {
+pub(crate) async fn connect(host_port: &str) -> io::Result<TcpStream> {
     let stream = tokio::time::timeout(CONNECT_TIMEOUT, TcpStream::connect(host_port))
         .await
         .map_err(|_| {
@@ -116,7 +116,7 @@ pub(super) async fn connect(host_port: &str) -> io::Result<TcpStream> {
 
 /// Pauses that double from a tenth of a second to ten seconds.
 #[derive(Debug)]
-pub(super) struct Backoff(Duration);
+pub(crate) struct Backoff(Duration);
 
 impl Default for Backoff {
     fn default() -> Backoff {
@@ -125,7 +125,7 @@ impl Default for Backoff {
 }
 
 impl Backoff {
-    pub(super) fn next_pause(&mut self) -> Duration {
+    pub(crate) fn next_pause(&mut self) -> Duration {
         let pause = self.0;
         self.0 = (pause * 2).min(MAX_PAUSE);
         pause

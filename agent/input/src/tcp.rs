@@ -5,7 +5,7 @@ use super::pump::pump;
 use crate::config::HostPort;
 use std::io;
 
-pub(super) async fn session(address: &HostPort, link: &Link) -> io::Result<End> {
+pub(crate) async fn session(address: &HostPort, link: &Link) -> io::Result<End> {
     let stream = connect(address.as_str()).await?;
     link.opened();
     pump(stream, link).await

@@ -5,11 +5,11 @@ use serde::Deserialize;
 /// Host name or address, colon and port; resolved at each connection.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
-pub(crate) struct HostPort(String);
+pub struct HostPort(String);
 
 impl HostPort {
     /// Returns the text as written.
-    pub(crate) fn as_str(&self) -> &str {
+    pub fn as_str(&self) -> &str {
         &self.0
     }
 }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// One input.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(try_from = "InputTable")]
-pub(crate) enum InputConfig {
+pub enum InputConfig {
     /// Reads a serial port.
     Serial(SerialConfig),
     /// Connects to a host and port.
@@ -34,7 +34,7 @@ pub(crate) enum InputConfig {
 impl InputConfig {
     /// Makes paths relative to the configuration's directory; what the input called `name` keeps
     /// is in `data_dir`.
-    pub(crate) fn resolve(&mut self, directory: &Path, data_dir: &Path, name: &str) {
+    pub fn resolve(&mut self, directory: &Path, data_dir: &Path, name: &str) {
         match self {
             InputConfig::File(path) => *path = directory.join(&path),
             InputConfig::SignalK(server) => server.resolve(directory, data_dir, name),
@@ -43,7 +43,7 @@ impl InputConfig {
     }
 
     /// Returns the kind by its name in the file.
-    pub(crate) fn kind(&self) -> &'static str {
+    pub fn kind(&self) -> &'static str {
         match self {
             InputConfig::Serial(_) => "serial",
             InputConfig::Tcp(_) => "tcp",
@@ -109,12 +109,12 @@ impl TryFrom<InputTable> for InputConfig {
 /// Serial port to read.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct SerialConfig {
+pub struct SerialConfig {
     /// Device, as `/dev/ttyUSB0`.
-    pub(crate) path: String,
+    pub path: String,
     /// Bits per second; IEC 61162-1 has 4800, 61162-2 38400.
     #[serde(default = "standard_baud")]
-    pub(crate) baud: u32,
+    pub baud: u32,
 }
 
 fn standard_baud() -> u32 {
@@ -124,11 +124,11 @@ fn standard_baud() -> u32 {
 /// A multicast group, and the interface to join it on.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "GroupText")]
-pub(crate) struct Group {
+pub struct Group {
     /// Address and port; IEC 61162-450 has 239.192.0.1 to 64, ports 60001 to 60009.
-    pub(crate) address: SocketAddrV4,
+    pub address: SocketAddrV4,
     /// Address of the interface; unspecified lets the system choose.
-    pub(crate) interface: Ipv4Addr,
+    pub interface: Ipv4Addr,
 }
 
 #[derive(Deserialize)]

@@ -30,7 +30,7 @@ trait Connection: AsyncRead + AsyncWrite + Unpin + Send {}
 
 impl<T: AsyncRead + AsyncWrite + Unpin + Send> Connection for T {}
 
-pub(super) async fn session(config: &SignalKConfig, link: &Link) -> io::Result<End> {
+pub(crate) async fn session(config: &SignalKConfig, link: &Link) -> io::Result<End> {
     let mut registration = Registration::load(config);
     let token = registration.token(config);
     let mut socket = match open(config, token).await? {

@@ -5,7 +5,6 @@
 //! server's page. Request and token are kept over restarts.
 
 use super::link::{CONNECT_TIMEOUT, Link};
-use crate::atomic_file::write_atomically;
 use crate::config::SignalKConfig;
 use reqwest::StatusCode;
 use rustls::pki_types::CertificateDer;
@@ -32,7 +31,7 @@ const DESCRIPTION: &str = "Binnacle compass agent";
 
 /// Registration at the server.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Registration {
+pub(crate) struct Registration {
     client_id: Uuid,
     /// Path of a request that waits for its decision.
     #[serde(default)]
@@ -58,7 +57,7 @@ struct Decision {
 
 impl Registration {
     /// Reads the registration; another one where there is none that can be read.
-    pub(super) fn load(config: &SignalKConfig) -> Registration {
+    pub(crate) fn load(config: &SignalKConfig) -> Registration {
         let text = config
             .registration
             .as_ref()
@@ -76,16 +75,19 @@ impl Registration {
             return Ok(());
         };
         let text = serde_json::to_vec(self).map_err(io::Error::other)?;
-        write_atomically(path, |file| Ok(file.write_all(&text)?)).map_err(io::Error::other)
+        // A partial file never looks complete.
+        let partial = path.with_extension("partial");
+        fs::write(&partial, &text)?;
+        fs::rename(&partial, path)
     }
 
     /// Returns the token to connect with.
-    pub(super) fn token<'a>(&'a self, config: &'a SignalKConfig) -> Option<&'a str> {
+    pub(crate) fn token<'a>(&'a self, config: &'a SignalKConfig) -> Option<&'a str> {
         config.token.as_deref().or(self.token.as_deref())
     }
 
     /// Returns whether the server gives nothing to those without a token.
-    pub(super) async fn needs_token(&self, config: &SignalKConfig) -> io::Result<bool> {
+    pub(crate) async fn needs_token(&self, config: &SignalKConfig) -> io::Result<bool> {
         let response = client(config)?.get(config.url.rest(SELF)).send().await;
         let status = response.map_err(io::Error::other)?.status();
         Ok(matches!(
@@ -95,7 +97,7 @@ impl Registration {
     }
 
     /// Asks for a token and waits until the server's administrator has decided.
-    pub(super) async fn obtain_token(
+    pub(crate) async fn obtain_token(
         &mut self,
         config: &SignalKConfig,
         link: &Link,
@@ -179,7 +181,7 @@ fn client(config: &SignalKConfig) -> io::Result<reqwest::Client> {
 }
 
 /// Returns the TLS that trusts the system's authorities, or only the configured one.
-pub(super) fn tls(config: &SignalKConfig) -> io::Result<ClientConfig> {
+pub(crate) fn tls(config: &SignalKConfig) -> io::Result<ClientConfig> {
     let Some(path) = &config.ca else {
         let builder = ClientConfig::builder().with_platform_verifier();
         return Ok(builder.map_err(io::Error::other)?.with_no_client_auth());

@@ -8,7 +8,7 @@ use tokio::io::{AsyncRead, AsyncReadExt};
 /// Chunk size: about eight hundred sentences.
 const CHUNK_BYTES: usize = 64 * 1024;
 
-pub(super) async fn pump(mut stream: impl AsyncRead + Unpin, link: &Link) -> io::Result<End> {
+pub(crate) async fn pump(mut stream: impl AsyncRead + Unpin, link: &Link) -> io::Result<End> {
     let mut decoder = Decoder::new(link.name.clone());
     let mut buffer = vec![0; CHUNK_BYTES];
     loop {

@@ -6,7 +6,7 @@ use binnacle_observation::recording::{RecordingReader, Survey};
 use std::io;
 use std::path::Path;
 
-pub(super) async fn session(path: &Path, link: &Link) -> io::Result<End> {
+pub(crate) async fn session(path: &Path, link: &Link) -> io::Result<End> {
     let (path, input) = (path.to_owned(), link.name.clone());
     let opened = tokio::task::spawn_blocking(move || {
         let plan = Survey::of(&path, None)?.plan();

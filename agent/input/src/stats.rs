@@ -9,7 +9,7 @@ use std::time::Instant;
 
 /// Counts since the agent started; updated once per chunk of bytes.
 #[derive(Debug, Default)]
-pub(crate) struct InputStats(Mutex<Counts>);
+pub struct InputStats(Mutex<Counts>);
 
 #[derive(Debug, Default)]
 struct Counts {
@@ -27,30 +27,30 @@ struct Counts {
 
 /// Snapshot of an input's counts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct InputStatus {
+pub struct InputStatus {
     /// Open or connected.
-    pub(crate) connected: bool,
+    pub connected: bool,
     /// Reason for the last closing, while it is not open.
-    pub(crate) problem: Option<String>,
+    pub problem: Option<String>,
     /// Seconds since the last byte.
-    pub(crate) last_heard_s_ago: Option<f64>,
+    pub last_heard_s_ago: Option<f64>,
     /// Bytes received.
-    pub(crate) bytes: u64,
+    pub bytes: u64,
     /// Observations delivered.
-    pub(crate) observations: u64,
+    pub observations: u64,
     /// Observations dropped because the channel was full (datagrams only).
-    pub(crate) dropped: u64,
+    pub dropped: u64,
     /// Number of times it was reopened.
-    pub(crate) reconnects: u64,
+    pub reconnects: u64,
     /// Parsed sentences and Signal K values, by kind.
-    pub(crate) sentences: BTreeMap<&'static str, u64>,
+    pub sentences: BTreeMap<&'static str, u64>,
     /// Unused lines, deltas and values, by reason.
-    pub(crate) rejected: BTreeMap<&'static str, u64>,
+    pub rejected: BTreeMap<&'static str, u64>,
 }
 
 impl InputStats {
     /// Returns the counts now.
-    pub(crate) fn status(&self) -> InputStatus {
+    pub fn status(&self) -> InputStatus {
         let counts = self.lock();
         let mut sentences: BTreeMap<_, _> = counts.sentences.sentences().collect();
         sentences.extend(&counts.values.values);
@@ -69,11 +69,11 @@ impl InputStats {
         }
     }
 
-    pub(super) fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.lock().bytes
     }
 
-    pub(super) fn opened(&self) {
+    pub(crate) fn opened(&self) {
         let mut counts = self.lock();
         counts.connected = true;
         counts.problem = None;
@@ -81,7 +81,7 @@ impl InputStats {
     }
 
     /// Marks the input as closed. Returns whether the reason has changed.
-    pub(super) fn closed(&self, problem: &str) -> bool {
+    pub(crate) fn closed(&self, problem: &str) -> bool {
         let mut counts = self.lock();
         counts.connected = false;
         if counts.problem.as_deref() == Some(problem) {
@@ -92,26 +92,26 @@ impl InputStats {
     }
 
     /// Counts a received chunk.
-    pub(super) fn count_received(&self, bytes: usize, sentences: &Tally) {
+    pub(crate) fn count_received(&self, bytes: usize, sentences: &Tally) {
         let mut counts = self.lock();
         counts.bytes += bytes as u64;
         counts.sentences.add(sentences);
         counts.last_heard = Some(Instant::now());
     }
 
-    pub(super) fn count_delivered(&self, observations: usize) {
+    pub(crate) fn count_delivered(&self, observations: usize) {
         self.lock().observations += observations as u64;
     }
 
-    pub(super) fn count_dropped(&self, observations: usize) {
+    pub(crate) fn count_dropped(&self, observations: usize) {
         self.lock().dropped += observations as u64;
     }
 
-    pub(super) fn count_values(&self, values: &DeltaCounts) {
+    pub(crate) fn count_values(&self, values: &DeltaCounts) {
         self.lock().values.add(values);
     }
 
-    pub(super) fn reject(&self, reason: &'static str) {
+    pub(crate) fn reject(&self, reason: &'static str) {
         *self.lock().values.rejected.entry(reason).or_default() += 1;
     }
 

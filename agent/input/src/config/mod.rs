@@ -1,0 +1,12 @@
+//! `[inputs.NAME]`: what an input reads.
+
+mod host_port;
+mod input;
+mod n2k_input;
+mod signalk;
+
+pub use host_port::HostPort;
+pub use input::InputConfig;
+pub use input::{Group, SerialConfig};
+pub use n2k_input::{ActisenseConfig, YdwgConfig};
+pub use signalk::SignalKConfig;
