@@ -162,7 +162,7 @@ impl Acquisition {
             return;
         };
         let signals = self.roles.observe(seen, measured, age);
-        self.guard.advance(self.roles.now(), heard);
+        self.guard.advance(self.roles.running_time(), heard);
         for signal in signals.into_iter().flatten() {
             for signal in self.guard.apply(signal).into_iter().flatten() {
                 let refused = self.independence.observe(signal);
@@ -179,7 +179,7 @@ impl Acquisition {
 
     /// Returns the ship's place now, by dead reckoning from the last trusted fix.
     pub(crate) fn place(&mut self, now: Instant) -> Option<ReckonedPlace> {
-        self.guard.advance(self.roles.now(), now);
+        self.guard.advance(self.roles.running_time(), now);
         self.guard.place()
     }
 

@@ -117,6 +117,13 @@ impl GnssClock {
         self.now
     }
 
+    /// Returns GNSS time as it runs on while a jump is uncertain: by the seconds that the receiver
+    /// has counted since.
+    pub(crate) fn running(&self) -> Option<Timestamp> {
+        let lasted_s = self.unconfirmed.map_or(0.0, |jump| jump.lasted_s);
+        self.now.map(|now| now.plus_seconds(lasted_s))
+    }
+
     /// Sets the computer's time as the reference for jumps.
     pub(crate) fn set_reference(&mut self, time: Timestamp, now: Instant) {
         self.reference = Some(ReferenceClock {

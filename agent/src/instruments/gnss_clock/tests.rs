@@ -57,6 +57,9 @@ fn no_time_passes_while_the_receiver_is_a_day_off() {
             hear(&mut clock, start, 1..60, 0);
             let steps = hear(&mut clock, start, 60..4_000, off_s);
             assert!(steps.iter().all(|step| *step == Step::Held), "{off_s}");
+            // What moves meanwhile is reckoned on by the receiver's own seconds.
+            let running_s = clock.running().unwrap().seconds_since(at(0));
+            assert!((3_990.0..4_000.0).contains(&running_s), "{running_s}");
             let problem = clock.problem().unwrap();
             assert!(problem.contains("nothing is sampled"), "{problem}");
             assert_eq!(clock.now(), Some(at(59)));

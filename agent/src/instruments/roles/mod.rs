@@ -141,6 +141,11 @@ impl Roles {
         self.clock.now()
     }
 
+    /// Returns GNSS time as it runs on while it is uncertain.
+    pub(crate) fn running_time(&self) -> Option<Timestamp> {
+        self.clock.running()
+    }
+
     /// Returns GNSS time unless it is uncertain.
     pub(crate) fn reliable_time(&self) -> Option<Timestamp> {
         self.clock.now().filter(|_| !self.clock.is_uncertain())
