@@ -108,6 +108,7 @@ pub(crate) fn replay(recordings: &Recordings<'_>) -> anyhow::Result<Replayed> {
     })?;
     acquisition.sampler.finish();
     replayed.samples.extend(acquisition.sampler.take_samples());
+    replayed.leave_out_reckoned();
     replayed.windows = acquisition.sampler.take_tally();
     replayed.notes.extend(ahead);
     for recording in &finished {
@@ -131,6 +132,18 @@ pub(crate) fn replay(recordings: &Recordings<'_>) -> anyhow::Result<Replayed> {
 }
 
 impl Replayed {
+    /// Leaves out samples whose position is by dead reckoning: no estimate may use them.
+    fn leave_out_reckoned(&mut self) {
+        let before = self.samples.len();
+        self.samples.retain(|sample| !sample.position_reckoned);
+        let count = before - self.samples.len();
+        if count > 0 {
+            self.notes.push(format!(
+                "{count} samples left out: GNSS interference, their position is by dead reckoning"
+            ));
+        }
+    }
+
     /// Leaves out recordings that cannot be merged with the others for want of any time.
     fn drop_untimed(&mut self, planned: Vec<Planned>) -> Vec<Planned> {
         if planned.iter().all(|recording| recording.start.is_none()) {

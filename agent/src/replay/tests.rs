@@ -28,9 +28,24 @@ fn clock(second: i64) -> (String, String) {
 }
 
 fn rmc(second: i64) -> String {
-    let (time, date) = clock(second);
+    rmc_off(second, 0.0)
+}
+
+/// A fix some minutes of latitude north of where the ship is.
+fn rmc_off(second: i64, north_min: f64) -> String {
+    let (_, date) = clock(second);
+    rmc_on(&date, second, north_min)
+}
+
+/// The same on a date.
+fn rmc_on(date: &str, second: i64, north_min: f64) -> String {
+    let (time, _) = clock(second);
+    let miles = 12.0 * second as f64 / 3_600.0;
+    let (sin, cos) = 47.0_f64.to_radians().sin_cos();
+    let north = 30.0 + miles * cos + north_min;
+    let west = 15.0 - miles * sin / 43.5_f64.to_radians().cos();
     sentence(&format!(
-        "GPRMC,{time},A,4330.0,N,00515.0,W,12.0,47.0,{date},,"
+        "GPRMC,{time},A,43{north:07.4},N,005{west:07.4},W,12.0,47.0,{date},,"
     ))
 }
 
@@ -89,6 +104,20 @@ fn all(folder: &TempDir, name: &str) -> PathBuf {
     record(folder, name, |second| {
         [rmc(second), compass(second), gyro(second)].join("\n")
     })
+}
+
+#[test]
+fn samples_under_interference_are_left_out_and_said() {
+    let folder = TempDir::new().unwrap();
+    let spoofed = record(&folder, "spoofed", |second| {
+        let north_min = if second < 1_500 { 0.0 } else { 20.0 };
+        [rmc_off(second, north_min), compass(second), gyro(second)].join("\n")
+    });
+    let replayed = run(&[spoofed]).unwrap();
+    let last = replayed.samples.last().unwrap();
+    assert!(last.time < at(NOON).plus_seconds(1_500.0), "{last:?}");
+    let notes = replayed.notes.join("\n");
+    assert!(notes.contains("left out: GNSS interference"), "{notes}");
 }
 
 #[test]
@@ -188,13 +217,8 @@ fn dates_older_than_a_roll_over_are_questioned_and_corrected_on_demand() {
     let folder = TempDir::new().unwrap();
     let whole = run(&[all(&folder, "all.log")]).unwrap();
     // 7,168 days before.
-    let rolled_over = |second| {
-        let (time, _) = clock(second);
-        let rmc = sentence(&format!(
-            "GPRMC,{time},A,4330.0,N,00515.0,W,12.0,47.0,190506,,"
-        ));
-        [rmc, compass(second), gyro(second)].join("\n")
-    };
+    let rolled_over =
+        |second| [rmc_on("190506", second, 0.0), compass(second), gyro(second)].join("\n");
     let path = record(&folder, "old.log", rolled_over);
     let replay_with = |roll_overs| {
         let replayed = replay(&Recordings {
