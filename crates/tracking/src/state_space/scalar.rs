@@ -17,8 +17,9 @@ use binnacle_compass::ship::PARAMETERS;
 /// Gyro's share of the reference heading where both are read: the noise that is new in every
 /// row is least.
 const GYRO_SHARE: f64 = 0.7;
-/// Reference's part of the white noise of a full row.
-const REFERENCE_WHITE: f64 = 0.4;
+/// Reference's part of the noise that is new in a row. One part for all rows: where readings are
+/// rounded, their errors last, and a part by each row's noise would take them for magnetism.
+const REFERENCE_PART: f64 = 0.4;
 /// Least change of an innovation by that of the compass's reading: no compass is steered by
 /// where it is less.
 const LEAST_PER_COMPASS: f64 = 0.1;
@@ -92,14 +93,7 @@ pub(crate) fn deviation(
         return deviation_by_course(row, mean, course, variance);
     }
     let reference = Reference::mixed(row, share);
-    let of_reference = reference_part(row, white, level * level);
-    deviation_by(row, mean, reference, variance, of_reference)
-}
-
-/// Returns the reference's part of a row's white noise.
-fn reference_part(row: &Row, white: f64, level_squared: f64) -> f64 {
-    let own = REFERENCE_WHITE * level_squared * row.difference_white.factor;
-    ((own + row.difference_white.scatter) / white).min(1.0)
+    deviation_by(row, mean, reference, variance, REFERENCE_PART)
 }
 
 /// Returns the deviation that an azimuth showed, in the circumstances of a row: no reference
