@@ -37,7 +37,7 @@ fn rmc_off(second: i64, north_min: f64) -> String {
     rmc_on(&date, second, north_min)
 }
 
-/// The same on a date.
+/// Fix of a date, some minutes of latitude north of where the ship is.
 fn rmc_on(date: &str, second: i64, north_min: f64) -> String {
     let (time, _) = clock(second);
     let miles = 12.0 * second as f64 / 3_600.0;
