@@ -147,7 +147,12 @@ fn apply_model(
     corrected.standard_error_deg = predicted
         .standard_error_deg
         .map(|deg| deg.hypot(by_place_deg / BAND_SIGMAS));
-    corrected.band95_deg = predicted.band95_deg.map(|deg| deg.hypot(by_place_deg));
+    // A model without errors of its own has at least that of the place.
+    let by_place = (by_place_deg > 0.0).then_some(by_place_deg);
+    corrected.band95_deg = predicted
+        .band95_deg
+        .map(|deg| deg.hypot(by_place_deg))
+        .or(by_place);
     corrected.magnetic_deg = Some(magnetic);
     corrected.true_deg = Some(magnetic + variation);
     Ok(())
@@ -336,6 +341,21 @@ pub(crate) mod tests {
         let (near, far) = (band(20.0), band(200.0));
         assert!(0.98 < near && near < 1.1, "{near}");
         assert!((1.2..4.0).contains(&far), "{far}");
+    }
+
+    #[test]
+    fn a_place_that_is_lost_ends_the_heading_of_a_model_without_errors_too() {
+        let model = model(2_400.0, None);
+        let corrected = |radius_nm| {
+            let place = place(43.3, -3.0).map(|place| ReckonedPlace { radius_nm, ..place });
+            correct(CorrectionInputs {
+                place,
+                ..inputs(Some(&model))
+            })
+        };
+        assert!(corrected(0.5).true_deg.is_some() && corrected(0.5).band95_deg.is_none());
+        assert!(corrected(100.0).band95_deg.is_some());
+        assert!(corrected(3_000.0).is_withheld());
     }
 
     #[test]
