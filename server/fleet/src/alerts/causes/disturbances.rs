@@ -82,7 +82,7 @@ fn interference(detected: &DetectedChange<'_>) -> Option<Condition> {
     })
 }
 
-/// Returns a place in whole degrees, as a part of a sentence.
+/// Returns a place in tenths of a degree, as a part of a sentence.
 fn near(position: Position) -> String {
     let part = |degrees: f64, [positive, negative]: [char; 2]| {
         let letter = if degrees < 0.0 { negative } else { positive };
