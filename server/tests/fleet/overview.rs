@@ -1,14 +1,15 @@
 //! The overview of the fleet.
 
-use binnacle_server_testing::TestServer;
 use binnacle_server_testing::alerts::{set_alert_limits, ship_with_model};
 use binnacle_server_testing::on_both;
+use binnacle_server_testing::{TestServer, passage};
 use serde_json::{Value, json};
 
 on_both!(
     the_overview_agrees_with_the_vessels_page,
     the_overview_predicts_for_the_next_port_call,
     the_overview_of_one_vessel_is_its_operators_alone,
+    gnss_interference_is_an_alert_with_its_place_until_it_passes,
 );
 
 const HOUR_S: f64 = 3_600.0;
@@ -102,5 +103,51 @@ async fn the_overview_of_one_vessel_is_its_operators_alone(server: TestServer) {
     assert_eq!(eve.get(&path).await.good()["vessels"], json!([]));
     assert_eq!(eve.get("/fleet").await.good()["vessels"], json!([]));
     assert_eq!(eve.get("/fleet?vessel=x").await.problem(), "bad-request");
+    server.finish().await;
+}
+
+async fn gnss_interference_is_an_alert_with_its_place_until_it_passes(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
+    let mut samples = passage("2026-11-20T00:00:00Z", 18);
+    for sample in &mut samples[6..] {
+        sample.position_reckoned = true;
+    }
+    nao.put(2, &samples).await.good();
+    server.advance(60.0);
+    server.work().await;
+    let alert = async || {
+        let alerts = ada.get("/alerts?state=raised").await.good();
+        let alerts = alerts["items"].as_array().unwrap().clone();
+        alerts
+            .into_iter()
+            .find(|alert| alert["cause"] == "gnss_interference")
+    };
+    let met = async || {
+        let fleet = ada.get("/fleet").await.good();
+        fleet["vessels"][0]["interference"].clone()
+    };
+    let summary = alert().await.unwrap()["summary"].to_string();
+    assert!(
+        summary.contains("° N, ") && summary.contains("° W since 2026-11-20 01:00"),
+        "{summary}"
+    );
+    let begun = met().await;
+    assert_eq!(begun[0]["began_at"], "2026-11-20T01:00:00Z", "{begun}");
+    assert_eq!(begun[0]["ended_at"], Value::Null);
+    let middle = samples[12].position;
+    assert_eq!(
+        begun[0]["lon"].as_f64().unwrap().signum(),
+        middle.lon_deg().signum()
+    );
+
+    nao.put(3, &passage("2026-11-20T04:00:00Z", 12))
+        .await
+        .good();
+    server.advance(60.0);
+    server.work().await;
+    assert_eq!(alert().await, None);
+    let over = met().await;
+    assert_eq!(over[0]["ended_at"], "2026-11-20T04:00:00Z", "{over}");
     server.finish().await;
 }
