@@ -7,10 +7,9 @@ mod common;
 
 use binnacle_nmea::sentence::{Hdg, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, datagram, parse, parse_tagged, write};
-use common::agent::{Agent, Running};
+use common::agent::Agent;
 use common::bridge::{self, Bridge};
 use common::server::TestServer;
-use serde_json::Value;
 use socket2::{Domain, Socket, Type};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
@@ -63,20 +62,6 @@ fn sentence(body: &str) -> Vec<u8> {
     format!("${body}*{sum:02X}\r\n").into_bytes()
 }
 
-/// Waits for a status.
-async fn status_when(running: &Running, wanted: impl Fn(&Value) -> bool) -> Value {
-    let seen = timeout(PATIENCE, async {
-        loop {
-            let status = common::fetch(running.page, "/api/status").await;
-            let status: Value = serde_json::from_str(&status).unwrap();
-            if wanted(&status) {
-                return status;
-            }
-        }
-    });
-    seen.await.expect("the status never came to it")
-}
-
 #[tokio::test]
 async fn the_bridge_acknowledges_the_agents_alert_and_hears_what_is_refused() {
     let bridge = Bridge::struck(8 * HOUR_S, 5 * HOUR_S + 1200, 25.0).await;
@@ -85,7 +70,7 @@ async fn the_bridge_acknowledges_the_agents_alert_and_hears_what_is_refused() {
     agent.configure("[output]", "alert_sentences = true");
     agent.enrol(&server.url).await;
     let running = agent.run().await;
-    status_when(&running, |status| status["link"]["state"] == "up").await;
+    common::status_when(&running, |status| status["link"]["state"] == "up").await;
     let mut console = Console::connect(running.output).await;
     bridge.sail();
 
@@ -102,13 +87,13 @@ async fn the_bridge_acknowledges_the_agents_alert_and_hears_what_is_refused() {
             .await
             .contains(",B,W,A,BIN,10001,1,")
     );
-    status_when(&running, |status| status["alert"]["acknowledged"] == true).await;
+    common::status_when(&running, |status| status["alert"]["acknowledged"] == true).await;
     console.send("CAACN,,BIN,10001,1,A,C").await;
     assert!(console.hear("ARC,").await.contains(",BIN,10001,1,A*"));
     let (_, log) = running.terminate().await;
     assert!(log.contains("the bridge acknowledged an alert"), "{log}");
     let running = agent.run().await;
-    let again = status_when(&running, |status| !status["alert"].is_null()).await;
+    let again = common::status_when(&running, |status| !status["alert"].is_null()).await;
     assert_eq!(again["alert"]["acknowledged"], true);
     running.kill().await;
 }
@@ -175,7 +160,7 @@ async fn a_difference_of_headings_is_raised_and_acknowledged_over_an_input() {
     assert!(raised.contains("HDG DIFFERENCE"), "{raised}");
     // It is an alarm: the heading goes on.
     console.hear("IIHDT,").await;
-    let status = status_when(&running, |status| {
+    let status = common::status_when(&running, |status| {
         status["heading_difference"]["is_open"] == true
     })
     .await;
@@ -192,7 +177,7 @@ async fn a_difference_of_headings_is_raised_and_acknowledged_over_an_input() {
     instruments.send(command).await.unwrap();
     let acknowledged = console.hear(",B,W,A,BIN,10002,1,").await;
     assert!(acknowledged.contains("ALF,2,1,"), "{acknowledged}");
-    status_when(&running, |status| {
+    common::status_when(&running, |status| {
         status["heading_difference"]["acknowledged"] == true
     })
     .await;
@@ -240,7 +225,7 @@ async fn without_a_model_no_line_carries_a_heading() {
         ),
     );
     let running = agent.run().await;
-    status_when(&running, |status| {
+    common::status_when(&running, |status| {
         !status["heading"]["compass_deg"].is_null()
     })
     .await;

@@ -6,10 +6,9 @@
 mod common;
 
 use binnacle_wire::alert::ShipAlertState;
-use common::agent::{Agent, Running};
+use common::agent::Agent;
 use common::bridge::{Bridge, START_S};
 use common::server::TestServer;
-use serde_json::Value;
 use std::collections::BTreeSet;
 use std::time::Duration;
 use tokio::io::{AsyncBufReadExt, BufReader};
@@ -21,20 +20,6 @@ const HOUR_S: i64 = 3600;
 /// Twenty minutes after a turn, when the compass has long come to rest.
 const STRUCK_S: i64 = 5 * HOUR_S + 1200;
 
-/// Waits for a status.
-async fn status_when(running: &Running, wanted: impl Fn(&Value) -> bool) -> Value {
-    let seen = timeout(PATIENCE, async {
-        loop {
-            let status = common::fetch(running.page, "/api/status").await;
-            let status: Value = serde_json::from_str(&status).unwrap();
-            if wanted(&status) {
-                return status;
-            }
-        }
-    });
-    seen.await.expect("the status never came to it")
-}
-
 #[tokio::test]
 async fn without_a_link_it_is_said_on_board_and_with_one_it_goes_first() {
     let bridge = Bridge::struck(8 * HOUR_S, STRUCK_S, 25.0).await;
@@ -43,7 +28,7 @@ async fn without_a_link_it_is_said_on_board_and_with_one_it_goes_first() {
     agent.configure("[output]", "alarm_sentence = true");
     agent.enrol(&server.url).await;
     let running = agent.run().await;
-    status_when(&running, |status| status["link"]["state"] == "up").await;
+    common::status_when(&running, |status| status["link"]["state"] == "up").await;
     server.stored.lock().unwrap().down = true;
     let stream = TcpStream::connect(running.output).await.unwrap();
     let mut lines = BufReader::new(stream).lines();
@@ -62,7 +47,7 @@ async fn without_a_link_it_is_said_on_board_and_with_one_it_goes_first() {
         alarm.contains(",001,A,V,COMPASS AND GYRO PARTED*"),
         "{alarm}"
     );
-    let open = status_when(&running, |status| status["alert"]["state"] == "open").await;
+    let open = common::status_when(&running, |status| status["alert"]["state"] == "open").await;
     let alert = &open["alert"];
     let advice = alert["advice"].as_str().unwrap();
     assert!(advice.starts_with("Steer by gyro"), "{advice}");
@@ -83,10 +68,10 @@ async fn without_a_link_it_is_said_on_board_and_with_one_it_goes_first() {
         &format!(r#"{{"id":"{id}"}}"#),
     )
     .await;
-    status_when(&running, |status| status["alert"]["revision"] == 2).await;
+    common::status_when(&running, |status| status["alert"]["revision"] == 2).await;
     running.kill().await;
     let running = agent.run().await;
-    let again = status_when(&running, |status| !status["alert"].is_null()).await;
+    let again = common::status_when(&running, |status| !status["alert"].is_null()).await;
     assert_eq!(again["alert"]["id"].as_str(), Some(id));
     assert_eq!(again["alert"]["acknowledged"], true);
 
@@ -132,7 +117,7 @@ async fn killed_around_the_strike_it_raises_one_alert_and_sends_each_revision_on
     let agent = Agent::new(bridge.address);
     agent.enrol(&server.url).await;
     let running = agent.run().await;
-    status_when(&running, |status| status["model"]["version"] == 3).await;
+    common::status_when(&running, |status| status["model"]["version"] == 3).await;
     bridge.sail();
     running.kill().await;
     for round in 1..=8 {
@@ -142,7 +127,7 @@ async fn killed_around_the_strike_it_raises_one_alert_and_sends_each_revision_on
         running.kill().await;
     }
     let running = agent.run().await;
-    status_when(&running, |status| {
+    common::status_when(&running, |status| {
         status["spool"]["waiting_batches"] == 0
             && status["alert"]["revision"].as_u64() > Some(1)
             && status["spool"]["acknowledged_batches"].as_u64() > Some(45)

@@ -53,6 +53,23 @@ pub(crate) async fn post(address: std::net::SocketAddr, path: &str, body: &str) 
     assert!(response.status().is_success(), "{response:?}");
 }
 
+/// Waits for a status.
+pub(crate) async fn status_when(
+    running: &agent::Running,
+    wanted: impl Fn(&serde_json::Value) -> bool,
+) -> serde_json::Value {
+    let seen = tokio::time::timeout(std::time::Duration::from_mins(2), async {
+        loop {
+            let status = fetch(running.page, "/api/status").await;
+            let status: serde_json::Value = serde_json::from_str(&status).unwrap();
+            if wanted(&status) {
+                return status;
+            }
+        }
+    });
+    seen.await.expect("the status never came to it")
+}
+
 /// Fetches a page as text.
 pub(crate) async fn fetch(address: std::net::SocketAddr, path: &str) -> String {
     rustls::crypto::ring::default_provider()
