@@ -166,10 +166,13 @@ fn the_model_says_its_grade_and_one_heading_makes_it_another() {
     let by_course = run(&samples);
     assert_eq!(grade(&by_course), Some(ReferenceGrade::CourseOverGround));
     assert_eq!(by_course.epochs[0].references, None);
-    for (sample, by_course) in samples[..500].iter_mut().zip(&by_course.samples) {
+    // A gyro with errors of its own, even within ±0.3°.
+    let errors = (0..500_i32).map(|k| 0.3 - 0.6 * (f64::from(k) * 0.618).fract());
+    for ((sample, by_course), error_deg) in samples.iter_mut().zip(&by_course.samples).zip(errors) {
         let compass_deg = sample.compass.degrees();
         let magnetic_deg = compass_deg + voyage.deviation_deg(compass_deg);
-        sample.gyro = TrueHeading::new(magnetic_deg + by_course.variation_deg.unwrap());
+        let true_deg = magnetic_deg + by_course.variation_deg.unwrap();
+        sample.gyro = TrueHeading::new(true_deg + error_deg);
     }
     let by_heading = run(&samples);
     assert_eq!(grade(&by_heading), Some(ReferenceGrade::Heading));

@@ -2,7 +2,7 @@
 
 use super::faults::Trust;
 use super::voyage::LoggedWork;
-use binnacle_analysis::fit::{HeadingReading, compare_references};
+use binnacle_analysis::fit::{HeadingReading, check_readings_independence, compare_references};
 use binnacle_analysis::readings::reading::{Reading, heading_reading};
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::result::{FitError, ReferenceCheck};
@@ -104,5 +104,6 @@ fn compare(readings: &[Reading], one_constant_sd_deg: f64) -> Result<ReferenceCh
         });
     }
     let referred: Vec<HeadingReading> = readings.iter().filter_map(heading_reading).collect();
+    check_readings_independence(&referred)?;
     compare_references(&referred, one_constant_sd_deg)
 }

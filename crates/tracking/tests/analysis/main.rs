@@ -32,15 +32,23 @@ fn time(minutes: i64) -> Timestamp {
         .plus_seconds(minutes as f64 * 60.0)
 }
 
-/// A sample of a perfect compass of `SHIP` with a perfect gyro.
+/// Error of the gyro at a time, degrees: even within ±0.2° and without memory. Without one,
+/// the reference would be the compass's own heading.
+fn gyro_error_deg(minutes: i64) -> f64 {
+    let turns = minutes as f64 * 0.618_033_988_75;
+    0.4 * (turns - turns.floor()) - 0.2
+}
+
+/// A sample of a perfect compass of `SHIP` with a gyro.
 fn sample(minutes: i64, lat: f64, magnetic_deg: f64) -> Sample {
     let position = Position::new(lat, -15.0).unwrap();
     let earth = field(FieldModel::Igrf14, position, 0.0, time(minutes)).unwrap();
     let needle = SHIP.linearised_at_magnetic(magnetic_deg.to_radians(), earth.for_ship());
     let compass = magnetic_deg - needle.deviation_rad.to_degrees();
     let compass = CompassHeading::new(compass).unwrap();
+    let gyro_deg = magnetic_deg + earth.declination().degrees_east() + gyro_error_deg(minutes);
     Sample {
-        gyro: TrueHeading::new(magnetic_deg + earth.declination().degrees_east()),
+        gyro: TrueHeading::new(gyro_deg),
         sog_kn: Some(14.0),
         rate_of_turn_deg_min: Some(0.0),
         spread_deg: Some(0.3),
@@ -119,7 +127,8 @@ fn a_perfect_voyage_gives_the_ship_back() {
     let epoch = analysis.current_epoch().unwrap();
     let model = epoch.model.as_ref().unwrap();
     let found = model.parameters_over_lambda.to_array();
-    let within = [20.0, 6e-4, 20.0, 6e-4, 4e-4, 4e-4, 4e-4];
+    // One reference alone hardly tells its constant from χ12 and χ21.
+    let within = [20.0, 6e-4, 20.0, 6e-4, 4e-4, 1e-3, 1e-3];
     for ((found, truth), within) in found.iter().zip(SHIP.to_array()).zip(within) {
         assert!((found - truth).abs() < within, "{found} for {truth}");
     }

@@ -26,6 +26,47 @@ fn a_wild_gyro_reading_is_rejected_and_named() {
     );
 }
 
+#[test]
+fn a_reference_made_of_the_compass_is_refused_by_name() {
+    let made_of = |sample: &Sample| {
+        let at = (sample.position, 0.0, sample.time);
+        let earth = field(FieldModel::Igrf14, at.0, at.1, at.2).unwrap();
+        TrueHeading::new(sample.compass.degrees() + earth.declination().degrees_east())
+    };
+    let base = with_satellite();
+    let by_gyro = base.iter().map(|s| Sample {
+        gyro: made_of(s),
+        satellite: None,
+        ..*s
+    });
+    let beside_a_gyro = base.iter().map(|s| Sample {
+        satellite: made_of(s),
+        ..*s
+    });
+    let voyages: [Vec<Sample>; 2] = [by_gyro.collect(), beside_a_gyro.collect()];
+    for samples in voyages {
+        let analysis = run(&samples);
+        let epoch = &analysis.epochs[0];
+        assert!(epoch.model.is_none());
+        let refusal = &epoch.refusal;
+        assert!(
+            matches!(
+                refusal,
+                Some(FitError::ReferenceIsCompass { samples: 1000, .. })
+            ),
+            "{refusal:?}"
+        );
+        let reason = Some(SampleReason::ReferenceFailed);
+        assert!(
+            analysis
+                .samples
+                .iter()
+                .all(|s| !s.used && s.reason == reason)
+        );
+    }
+    assert_eq!(run(&base).epochs[0].refusal, None);
+}
+
 /// The voyage with a satellite compass beside the gyro.
 fn with_satellite() -> Vec<Sample> {
     voyage()
