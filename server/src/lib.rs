@@ -15,6 +15,7 @@ pub mod kinds;
 pub mod state;
 pub mod subscriptions;
 
+pub mod backup;
 pub mod dashboard;
 pub mod health;
 pub mod routes;

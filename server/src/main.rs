@@ -13,6 +13,8 @@ fn main() -> Result<ExitCode> {
     match Cli::parse().command {
         Command::Serve(serve) => command::serve(*serve),
         Command::Migrate(database) => command::migrate(&database),
+        Command::Backup(arguments) => command::back_up(&arguments),
+        Command::Restore(arguments) => command::restore(&arguments),
         Command::Admin(admin) => command::admin(admin),
         Command::Bursts(arguments) => command::bursts(&arguments),
         Command::Import(arguments) => command::import(&arguments),

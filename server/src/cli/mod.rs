@@ -25,6 +25,10 @@ pub enum Command {
     Serve(Box<Serve>),
     /// Bring the database's schema up to date
     Migrate(Database),
+    /// Copy the database into a file, while the server goes on
+    Backup(Backup),
+    /// Restore a backup into an empty database
+    Restore(Backup),
     /// Create operators and users, revoke agents
     Admin(Admin),
     /// Store batches that were sent as short-burst messages
@@ -49,6 +53,16 @@ pub enum Command {
     Plan(Plan),
     /// Plan who adjusts which compass, where and when
     Schedule(Schedule),
+}
+
+/// Arguments of `backup` and `restore`.
+#[derive(Debug, Args)]
+pub struct Backup {
+    /// Database to use.
+    #[command(flatten)]
+    pub database: Database,
+    /// File of the backup
+    pub file: PathBuf,
 }
 
 /// Arguments of `verify-evidence`.

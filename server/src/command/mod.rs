@@ -6,6 +6,7 @@
 
 mod admin;
 mod analyse;
+mod backup;
 mod deviation;
 mod field;
 mod fit;
@@ -21,6 +22,7 @@ mod verify_evidence;
 
 pub use admin::admin;
 pub use analyse::analyse;
+pub use backup::{back_up, restore};
 pub use deviation::deviation;
 pub use field::field;
 pub use fit::fit;

@@ -9,9 +9,10 @@ use binnacle_platform::db::{Connection, Db, Pools};
 use binnacle_server::cli::{Cli, Command};
 use binnacle_server::subscriptions::subscribers;
 use binnacle_server::worker::{self, Worked};
-use binnacle_server::{command, health};
+use binnacle_server::{backup, command, health};
 use clap::Parser;
 use metrics_exporter_prometheus::PrometheusHandle;
+use std::path::Path;
 use std::sync::OnceLock;
 use tokio::net::TcpListener;
 use tokio::task::JoinHandle;
@@ -87,6 +88,19 @@ impl TestServer {
         self.app.stopping.cancel();
         self.serving.await.unwrap().unwrap();
         TestServer::open(self.database, self.app.clock, &[]).await
+    }
+
+    /// Starts a server on a backup restored into a new database.
+    pub async fn restored(engine: Engine, file: &Path) -> TestServer {
+        let database = Database::bare(engine).await;
+        backup::restore(&database.url, file).await.unwrap();
+        let clock = Clock::manual(Timestamp::parse(START).unwrap());
+        TestServer::open(database, clock, &[]).await
+    }
+
+    /// Returns the URL of the database.
+    pub fn database_url(&self) -> &str {
+        &self.database.url
     }
 
     /// Stops the server and removes its database.

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 
+mod backup;
 mod commands;
 mod dashboard;
 mod documentation_examples;
