@@ -35,13 +35,14 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
     let rows = voyage.read_part(input, &readings);
     voyage.finish();
     let tracker = &voyage.tracker;
-    let detected = merge_overlapping(&tracker.detected);
-    let suspected = merge_overlapping(&tracker.suspected());
+    let times = RowTimes::new(&rows, logbook);
+    let now = times.last();
+    let detected = merge_overlapping(&tracker.detected, now);
+    let suspected = merge_overlapping(&tracker.suspected(), now);
     let current = tracker.current_ship();
     let until_sailing = tracker.ship_until_sailing();
-    let times = RowTimes::new(&rows, logbook);
 
-    let faults = Faults::new(&detected, &suspected, times.last());
+    let faults = Faults::new(&detected, &suspected, now);
     let reference_sd_deg = input.settings.reference_constant_sd_deg;
     let references = match grade {
         ReferenceGrade::Heading => References::compare(&readings, &voyage.works, reference_sd_deg),

@@ -3,20 +3,23 @@
 //! A hypothesis may hold a storm and an anomaly at once, or two faults of one gyro, because
 //! together they explain the samples better than either.
 
-use super::faults::reference;
+use super::faults::{end, reference};
 use crate::weighing::records::{Class, Detected};
+use binnacle_compass::time::Timestamp;
 
 /// Time between the end of an event and the next within which they are one, seconds.
 const ONE_WITHIN_S: f64 = 3600.0;
 
-/// Merges events of one subject, the ship excepted, that overlap in time.
-pub(super) fn merge_overlapping(detected: &[Detected]) -> Vec<Detected> {
+/// Merges events of one subject, the ship excepted, that overlap in time by now.
+pub(super) fn merge_overlapping(detected: &[Detected], now: Option<Timestamp>) -> Vec<Detected> {
     let mut merged: Vec<Detected> = Vec::with_capacity(detected.len());
     for next in detected {
-        let same = merged.iter_mut().find(|known| is_one(known, next));
+        let mut next = next.clone();
+        next.event.until = now.and_then(|now| end(&next, now));
+        let same = merged.iter_mut().find(|known| is_one(known, &next));
         match same {
-            Some(known) => merge(known, next),
-            None => merged.push(next.clone()),
+            Some(known) => merge(known, &next),
+            None => merged.push(next),
         }
     }
     merged

@@ -25,17 +25,24 @@ fn nearest(analysis: &Analysis, to: Timestamp) -> &Change {
 
 #[test]
 fn a_gyro_fault_with_a_satellite_compass_on_board_is_named_at_once() {
-    let log = sail_log(31, &calm(Event::GyroFault(4.0)));
-    let broke = began(&log, Name::GyroFault);
-    let analysis = run(&log.samples);
-    is_sound(&analysis);
-    assert!(of_the_ship(&analysis).is_empty(), "{:?}", analysis.changes);
-    let fault = analysis.changes.iter().find(|c| c.detected_at >= broke);
-    let fault = fault.unwrap();
-    assert_eq!(fault.cause, Cause::ReferenceFault);
-    let delay_h = fault.detected_at.seconds_since(broke) / HOUR_S;
-    assert!(delay_h < 2.0, "{delay_h} h");
-    assert_eq!(analysis.epochs.len(), 1);
+    // Among them a ship whose gyro is believed to have settled two weeks before.
+    let ships = 30..37;
+    let mut without_false_change = 0;
+    for seed in ships.clone() {
+        let log = sail_log(seed, &calm(Event::GyroFault(4.0)));
+        let broke = began(&log, Name::GyroFault);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        without_false_change += usize::from(of_the_ship(&analysis).is_empty());
+        let two_hours = broke.plus_seconds(2.0 * HOUR_S);
+        let is_named = analysis.changes.iter().any(|c| {
+            c.cause == Cause::ReferenceFault
+                && c.detected_at < two_hours
+                && c.ended.is_none_or(|ended| ended > two_hours)
+        });
+        assert!(is_named, "seed {seed}: {:?}", analysis.changes);
+    }
+    assert!(without_false_change + 1 >= ships.count());
 }
 
 #[test]
