@@ -33,6 +33,10 @@ const SIZES: [Guess; 2] = [guess(1.0, 0.85), guess(2.5, 0.15)];
 /// Guesses of the gyro's speed error that is left in the reading.
 const SPEED_ERRORS: [Guess; 2] = [guess(0.0, 0.85), guess(1.0, 0.15)];
 
+/// Guesses of how large the references' constants are, over their usual size. Two of them have
+/// heavier tails than one: a constant of 0.75° sec φ is allowed [IMO A.424(XI)].
+const CONSTANTS: [Guess; 2] = [guess(1.0, 0.85), guess(2.0, 0.15)];
+
 /// Guesses of the habit that a ship has much more than others: her magnetism drifts, or jumps
 /// a little at each call.
 const HABITS: [(Option<Level>, f64); 3] = [
@@ -58,37 +62,52 @@ pub(crate) fn starts(
     };
     let mut starts: Vec<Hypothesis> = Vec::new();
     for component in &prior.components {
-        for size in SIZES {
-            for speed in SPEED_ERRORS {
-                if row.gyro_deg.is_none() && speed.size != 0.0 {
-                    continue;
-                }
-                let mut filter = of_component(component, size.size, &plain);
-                if row.gyro_deg.is_some() {
-                    filter.mean[SPEED] = speed.size;
-                }
-                let probability = component.weight * size.probability * speed.probability;
-                for (nth, alignment) in ALIGNMENTS.into_iter().enumerate() {
-                    let is_last = nth + 1 == ALIGNMENTS.len();
-                    let filter =
-                        with_alignment(&filter, alignment.size, is_last.then_some(row), levels);
-                    for (lively, share) in HABITS {
-                        let probability = probability * alignment.probability * share;
-                        starts.push(Hypothesis {
-                            filter: filter.clone(),
-                            events: Vec::new(),
-                            log_prior: probability.ln(),
-                            start: starts.len(),
-                            lively,
-                            wild: None,
-                            amid: None,
-                        });
-                    }
+        for (size, speed, constant) in guesses_of_instruments(row) {
+            let mut filter = of_component(component, size.size, &plain);
+            if row.gyro_deg.is_some() {
+                filter.mean[SPEED] = speed.size;
+            }
+            for state in [GYRO, SATELLITE] {
+                filter.covariance[state][state] *= constant.size.powi(2);
+            }
+            let probability =
+                component.weight * size.probability * speed.probability * constant.probability;
+            for (nth, alignment) in ALIGNMENTS.into_iter().enumerate() {
+                let is_last = nth + 1 == ALIGNMENTS.len();
+                let filter =
+                    with_alignment(&filter, alignment.size, is_last.then_some(row), levels);
+                for (lively, share) in HABITS {
+                    let probability = probability * alignment.probability * share;
+                    starts.push(Hypothesis {
+                        filter: filter.clone(),
+                        events: Vec::new(),
+                        log_prior: probability.ln(),
+                        start: starts.len(),
+                        lively,
+                        wild: None,
+                        amid: None,
+                    });
                 }
             }
         }
     }
     starts
+}
+
+/// Returns each guess of the ship's size with each of the speed error and of the constants, as far
+/// as a ship has the instruments.
+fn guesses_of_instruments(row: &Row) -> impl Iterator<Item = (Guess, Guess, Guess)> {
+    let speeds = if row.gyro_deg.is_some() { 2 } else { 1 };
+    let constants = if row.course.is_none() { 2 } else { 1 };
+    SIZES.into_iter().flat_map(move |size| {
+        SPEED_ERRORS
+            .into_iter()
+            .take(speeds)
+            .flat_map(move |speed| {
+                let constants = CONSTANTS.into_iter().take(constants);
+                constants.map(move |constant| (size, speed, constant))
+            })
+    })
 }
 
 /// Returns a filter before the first row, its ship drawn from a component of the prior.
