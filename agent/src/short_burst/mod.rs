@@ -8,7 +8,7 @@
 //! - Its bytes are those that an ordinary link sends. The server may receive it both ways, in any
 //!   order, and stores it once.
 //! - The number of sent messages is stored after each of them: a restart repeats at most one.
-//! - An acknowledgement deletes only what was sent.
+//! - An acknowledgement deletes only what was sent; one beyond that is refused.
 
 mod file;
 
@@ -64,14 +64,13 @@ async fn exchange(spool: &Spool, modem: &mut impl Modem) -> anyhow::Result<()> {
     while let Some(message) = modem.receive().await? {
         match read_ack(&message) {
             Ok(ack) if ack.stream == StreamTag::from_stream(identity.stream) => {
-                let acknowledged = spool
-                    .acknowledge_bursts(&identity, ack.contiguous_seq)
-                    .await?;
-                tracing::info!(
-                    seq = ack.contiguous_seq,
-                    acknowledged,
-                    "the server acknowledged batches"
-                );
+                let seq = ack.contiguous_seq;
+                match spool.acknowledge_bursts(&identity, seq).await? {
+                    Ok(acknowledged) => {
+                        tracing::info!(seq, acknowledged, "the server acknowledged batches");
+                    }
+                    Err(refused) => tracing::error!("an acknowledgement was refused: {refused}"),
+                }
             }
             Ok(_) => tracing::warn!("an acknowledgement of another stream was ignored"),
             Err(error) => tracing::warn!(%error, "an invalid message was ignored"),

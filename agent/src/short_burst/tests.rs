@@ -101,6 +101,22 @@ async fn an_acknowledgement_deletes_only_what_is_out_and_of_this_stream() {
 }
 
 #[tokio::test]
+async fn an_acknowledgement_beyond_what_is_out_is_refused_whole() {
+    let (directory, spool, mut modem) = rig().await;
+    seal(&spool, 0..1).await;
+    exchange(&spool, &mut modem).await.unwrap();
+    seal(&spool, 1..2).await;
+    deliver(directory.path(), "1.sbd", &ack(7, 2));
+    exchange(&spool, &mut modem).await.unwrap();
+    let status = spool.status().await.unwrap();
+    assert_eq!((status.waiting_batches, status.contiguous_seq), (2, 0));
+    deliver(directory.path(), "2.sbd", &ack(7, 2));
+    exchange(&spool, &mut modem).await.unwrap();
+    let status = spool.status().await.unwrap();
+    assert_eq!((status.waiting_batches, status.contiguous_seq), (0, 2));
+}
+
+#[tokio::test]
 async fn an_alert_goes_before_the_backlog() {
     let (directory, spool, mut modem) = rig().await;
     seal(&spool, 0..1).await;

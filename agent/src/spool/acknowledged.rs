@@ -7,9 +7,12 @@
 //!   clock.
 //! - A lower contiguous number from the server is the only sign of a loss. Then all batches above
 //!   it are sent again, byte for byte. Those that the server still has are not stored twice.
+//! - No acknowledgement beyond what this agent has sent is believed, even in part: it is of another
+//!   stream, or of another copy of this agent.
 
 use super::database::{Spool, get};
 use super::keys::CONTIGUOUS_SEQ;
+use binnacle_wire::batch::StreamId;
 use binnacle_wire::messages::Downlink;
 use sqlx::SqliteConnection;
 
@@ -17,6 +20,41 @@ use sqlx::SqliteConnection;
 const RETENTION_MICROS: i64 = 30 * 86_400 * 1_000_000;
 /// Batches deleted in one transaction.
 const DELETE_AT_ONCE: i64 = 64;
+
+/// Acknowledgement that covers batches which this agent never sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("batches up to {claimed} were acknowledged, but only {sent} have been sent")]
+pub(crate) struct NeverSent {
+    /// Number up to which the server claims to have every batch.
+    pub(crate) claimed: u64,
+    /// Highest number that was sent.
+    pub(crate) sent: u64,
+}
+
+/// Fails for an acknowledgement beyond every batch that this agent has sent in the stream.
+pub(super) async fn ensure_sent(
+    tx: &mut SqliteConnection,
+    stream: StreamId,
+    claimed: u64,
+) -> sqlx::Result<Result<(), NeverSent>> {
+    let tried: Option<i64> = sqlx::query_scalar("SELECT MAX(seq) FROM batches WHERE tried")
+        .fetch_one(&mut *tx)
+        .await?;
+    let recorded: Option<i64> =
+        sqlx::query_scalar("SELECT MAX(seq) FROM acknowledged WHERE stream = $1")
+            .bind(stream.to_string())
+            .fetch_one(&mut *tx)
+            .await?;
+    // Records and batches may have been lost with the disk, but not what they led to.
+    let believed: u64 = get(tx, CONTIGUOUS_SEQ).await?.unwrap_or(0);
+    let sent = tried.max(recorded).unwrap_or(0).cast_unsigned();
+    let sent = sent.max(believed);
+    Ok(if claimed > sent {
+        Err(NeverSent { claimed, sent })
+    } else {
+        Ok(())
+    })
+}
 
 impl Spool {
     /// Queues all retained batches again, after the server lost the stream.
@@ -115,7 +153,7 @@ fn as_stored(seq: u64) -> i64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{accepted, downlink, enrolled, identity, seal};
+    use super::super::tests::{accepted, downlink, enrolled, identity, next_sent, seal};
     use super::*;
     use crate::spool::Seal;
     use binnacle_compass::sample::Sample;
@@ -124,13 +162,14 @@ mod tests {
     /// sent numbers.
     async fn send(spool: &Spool, contiguous: u64) -> Vec<u64> {
         let mut sent = Vec::new();
-        while let Some(batch) = spool.next_batch().await.unwrap() {
+        while let Some(batch) = next_sent(spool).await {
             sent.push(batch.seq);
             assert!(sent.len() < 20, "{sent:?}");
             let far = contiguous.max(batch.seq);
             spool
                 .acknowledge(identity(7).stream, &batch, &downlink(far))
                 .await
+                .unwrap()
                 .unwrap();
         }
         sent
@@ -145,11 +184,12 @@ mod tests {
         let first = spool.next_batch().await.unwrap().unwrap();
         assert_eq!(send(&spool, 0).await, [1, 2, 3]);
         seal(&spool, 3..4).await;
-        let fourth = spool.next_batch().await.unwrap().unwrap();
+        let fourth = next_sent(&spool).await.unwrap();
         let stream = identity(7).stream;
         spool
             .acknowledge(stream, &fourth, &downlink(1))
             .await
+            .unwrap()
             .unwrap();
         assert!(!spool.has_unfillable_gap(1).await.unwrap());
         assert_eq!(send(&spool, 4).await, [2, 3]);
@@ -169,11 +209,12 @@ mod tests {
             seal(&spool, minute..minute + 1).await;
         }
         for seq in 1..=4 {
-            let batch = spool.next_batch().await.unwrap().unwrap();
+            let batch = next_sent(&spool).await.unwrap();
             assert_eq!(batch.seq, seq);
             spool
                 .acknowledge(identity(7).stream, &batch, &downlink(0))
                 .await
+                .unwrap()
                 .unwrap();
         }
         assert_eq!(spool.next_batch().await.unwrap(), None);
@@ -185,11 +226,12 @@ mod tests {
         seal(&spool, 0..1).await;
         send(&spool, 0).await;
         seal(&spool, 1..2).await;
-        let second = spool.next_batch().await.unwrap().unwrap();
+        let second = next_sent(&spool).await.unwrap();
         let mut later = downlink(2);
         later.server_time = later.server_time.plus_seconds(31.0 * 86_400.0);
         let stream = identity(7).stream;
-        spool.acknowledge(stream, &second, &later).await.unwrap();
+        let acknowledged = spool.acknowledge(stream, &second, &later).await;
+        assert_eq!(acknowledged.unwrap(), Ok(()));
         assert_eq!(kept(&spool).await, [2]);
         let many: Vec<Sample> = (2..400).map(super::super::tests::restless).collect();
         spool.store(&many, &accepted(1), Seal::All).await.unwrap();

@@ -1,6 +1,6 @@
 //! Sealed batches: their order, their state, and the change to another stream.
 
-use super::acknowledged;
+use super::acknowledged::{self, NeverSent, ensure_sent};
 use super::database::{Spool, get, put};
 use super::identity::Identity;
 use super::keys::{CONTIGUOUS_SEQ, IDENTITY, NEXT_SEQ};
@@ -71,14 +71,17 @@ impl Spool {
     }
 
     /// Acknowledges a batch, and reconciles the spool with the server's contiguous number
-    /// ([`super::acknowledged`]).
+    /// ([`super::acknowledged`]). Refuses a number that was never sent, and then changes nothing.
     pub(crate) async fn acknowledge(
         &self,
         stream: StreamId,
         batch: &SealedBatch,
         downlink: &Downlink,
-    ) -> sqlx::Result<()> {
+    ) -> sqlx::Result<Result<(), NeverSent>> {
         let mut tx = self.write().await?;
+        if let Err(refused) = ensure_sent(&mut tx, stream, downlink.contiguous_seq).await? {
+            return Ok(Err(refused));
+        }
         let before = get(&mut tx, CONTIGUOUS_SEQ).await?.unwrap_or(0);
         put(&mut tx, CONTIGUOUS_SEQ, &downlink.contiguous_seq).await?;
         save_downlink(&mut tx, downlink).await?;
@@ -104,7 +107,8 @@ impl Spool {
             record_acknowledged(&mut tx, stream, batch, samples).await?;
         }
         acknowledged::reconcile(&mut tx, batch.seq, before, downlink).await?;
-        tx.commit().await
+        tx.commit().await?;
+        Ok(Ok(()))
     }
 
     /// Parks a batch that the server refused. A batch damaged by the disk is quarantined, and an

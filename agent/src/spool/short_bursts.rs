@@ -1,5 +1,6 @@
 //! Delivery of batches as short messages.
 
+use super::acknowledged::{NeverSent, ensure_sent};
 use super::batches::{SealedBatch, record_acknowledged};
 use super::database::{Spool, get, put};
 use super::identity::Identity;
@@ -62,14 +63,18 @@ impl Spool {
     }
 
     /// Acknowledges the batches up to a number whose messages are all sent. Returns their number.
+    /// Refuses a number that was never sent, and then changes nothing.
     pub(crate) async fn acknowledge_bursts(
         &self,
         identity: &Identity,
         contiguous_seq: u64,
-    ) -> sqlx::Result<usize> {
+    ) -> sqlx::Result<Result<usize, NeverSent>> {
         let mut tx = self.write().await?;
         if get::<Identity>(&mut tx, IDENTITY).await?.as_ref() != Some(identity) {
-            return Ok(0);
+            return Ok(Ok(0));
+        }
+        if let Err(refused) = ensure_sent(&mut tx, identity.stream, contiguous_seq).await? {
+            return Ok(Err(refused));
         }
         let rows: Vec<(i64, Vec<u8>, bool, i64)> = sqlx::query_as(
             "UPDATE batches SET standing = 'acknowledged', problem = NULL
@@ -95,6 +100,6 @@ impl Spool {
             put(&mut tx, CONTIGUOUS_SEQ, &contiguous_seq).await?;
         }
         tx.commit().await?;
-        Ok(acknowledged)
+        Ok(Ok(acknowledged))
     }
 }

@@ -1,7 +1,8 @@
 //! Handling of responses and of failed requests.
 //!
 //! Invariants: a response for a stream that the agent has left changes nothing. A refused batch is
-//! kept with the reason, and blocks nothing else.
+//! kept with the reason, and blocks nothing else; so is one whose response acknowledges batches
+//! that were never sent.
 
 use super::request_error::RequestError;
 use super::{LinkState, LinkStatus, NextStep, Uplink};
@@ -22,9 +23,11 @@ impl Uplink {
         let downlink = self.drop_unreadable_model(downlink);
         match batch {
             Some(batch) => {
-                self.spool
-                    .acknowledge(identity.stream, batch, &downlink)
-                    .await?;
+                let acknowledged = self.spool.acknowledge(identity.stream, batch, &downlink);
+                if let Err(refused) = acknowledged.await? {
+                    let refused = RequestError::Refused(refused.to_string());
+                    return self.handle_failure(identity, Some(batch), refused).await;
+                }
                 tracing::info!(
                     seq = batch.seq,
                     bytes = batch.bytes.len(),
@@ -63,11 +66,7 @@ impl Uplink {
                 return self.open_stream(identity).await;
             }
             (RequestError::Refused(_), Some(batch)) => {
-                tracing::error!(
-                    seq = batch.seq,
-                    problem,
-                    "the server refused a batch, it is parked"
-                );
+                tracing::error!(seq = batch.seq, problem, "a batch is parked");
                 self.spool.park(batch.seq, &problem).await?;
                 (LinkState::Up, self.backoff.next(&mut self.rng))
             }

@@ -28,12 +28,13 @@ async fn an_alert_is_kept_with_the_batch_that_carries_it_and_hurries_the_one_bef
     let spool = Spool::open(directory.path()).await.unwrap();
     assert_eq!(spool.alert().await.unwrap(), Some(known));
     let mut order = Vec::new();
-    while let Some(sent) = spool.next_batch().await.unwrap() {
+    while let Some(sent) = next_sent(&spool).await {
         let batch = binnacle_wire::decode(&sent.bytes).unwrap();
         order.push((sent.seq, sent.urgent, batch.alerts.len()));
         spool
             .acknowledge(identity(7).stream, &sent, &downlink(0))
             .await
+            .unwrap()
             .unwrap();
     }
     let wanted = [(4, true, 1), (3, true, 0), (1, false, 0), (2, false, 0)];

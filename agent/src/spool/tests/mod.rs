@@ -2,6 +2,7 @@
 
 mod alerts;
 
+use super::acknowledged::NeverSent;
 use super::*;
 use crate::alert::AlertRecord;
 use crate::sampler::Exclusion;
@@ -99,6 +100,13 @@ pub(crate) async fn enrolled() -> (TempDir, Spool) {
     (directory, spool)
 }
 
+/// The next batch, marked as sent.
+pub(crate) async fn next_sent(spool: &Spool) -> Option<SealedBatch> {
+    let batch = spool.next_batch().await.unwrap()?;
+    assert!(spool.mark_tried(&batch).await.unwrap());
+    Some(batch)
+}
+
 pub(crate) async fn seal(spool: &Spool, minutes: std::ops::Range<i64>) {
     let samples: Vec<Sample> = minutes.map(sample).collect();
     spool
@@ -167,13 +175,14 @@ async fn a_batch_goes_only_when_it_and_all_before_it_are_acknowledged() {
         seal(&spool, minute..minute + 1).await;
     }
     let stream = identity(7).stream;
-    let first = spool.next_batch().await.unwrap().unwrap();
+    let first = next_sent(&spool).await.unwrap();
     spool.park(1, "unreadable").await.unwrap();
-    let second = spool.next_batch().await.unwrap().unwrap();
+    let second = next_sent(&spool).await.unwrap();
     assert_eq!(second.seq, 2);
     spool
         .acknowledge(stream, &second, &downlink(0))
         .await
+        .unwrap()
         .unwrap();
     assert!(!spool.has_unfillable_gap(0).await.unwrap());
     let status = spool.status().await.unwrap();
@@ -183,6 +192,7 @@ async fn a_batch_goes_only_when_it_and_all_before_it_are_acknowledged() {
     spool
         .acknowledge(stream, &first, &downlink(2))
         .await
+        .unwrap()
         .unwrap();
     let status = spool.status().await.unwrap();
     assert_eq!(
@@ -195,16 +205,33 @@ async fn a_batch_goes_only_when_it_and_all_before_it_are_acknowledged() {
 }
 
 #[tokio::test]
-async fn a_server_that_claims_too_much_deletes_nothing_unsent() {
+async fn an_acknowledgement_beyond_what_was_sent_is_refused_and_changes_nothing() {
     let (_directory, spool) = enrolled().await;
-    seal(&spool, 0..1).await;
-    seal(&spool, 1..2).await;
-    let first = spool.next_batch().await.unwrap().unwrap();
-    spool
-        .acknowledge(identity(7).stream, &first, &downlink(99))
+    for minute in 0..3 {
+        seal(&spool, minute..minute + 1).await;
+    }
+    let stream = identity(7).stream;
+    let first = next_sent(&spool).await.unwrap();
+    let acknowledged = spool.acknowledge(stream, &first, &downlink(1)).await;
+    assert_eq!(acknowledged.unwrap(), Ok(()));
+    let second = next_sent(&spool).await.unwrap();
+    let before = spool.status().await.unwrap();
+    for claimed in [3, 99, u64::MAX] {
+        let mut response = downlink(claimed);
+        // Late enough to delete what was acknowledged a month ago.
+        response.server_time = response.server_time.plus_seconds(40.0 * 86_400.0);
+        let refused = spool.acknowledge(stream, &second, &response).await.unwrap();
+        assert_eq!(refused, Err(NeverSent { claimed, sent: 2 }));
+        assert_eq!(spool.status().await.unwrap(), before);
+        assert_eq!(spool.next_batch().await.unwrap().unwrap(), second);
+    }
+    let kept: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM batches")
+        .fetch_one(&spool.pool)
         .await
         .unwrap();
-    assert_eq!(spool.next_batch().await.unwrap().unwrap().seq, 2);
+    assert_eq!(kept, 3);
+    let acknowledged = spool.acknowledge(stream, &second, &downlink(2)).await;
+    assert_eq!(acknowledged.unwrap(), Ok(()));
 }
 
 #[tokio::test]
@@ -213,10 +240,11 @@ async fn a_new_stream_numbers_what_is_left_from_one() {
     for minute in 0..3 {
         seal(&spool, minute..minute + 1).await;
     }
-    let first = spool.next_batch().await.unwrap().unwrap();
+    let first = next_sent(&spool).await.unwrap();
     spool
         .acknowledge(identity(7).stream, &first, &downlink(1))
         .await
+        .unwrap()
         .unwrap();
     spool
         .move_to_stream(StreamId(Uuid::from_u128(8)))

@@ -73,6 +73,31 @@ async fn no_json_of_a_proxy_passes_for_the_servers_word() {
 }
 
 #[tokio::test]
+async fn a_response_that_acknowledges_what_was_never_sent_deletes_nothing() {
+    let claim = json!({ "contiguous_seq": 9, "server_time": time() });
+    let fake = Fake {
+        responses: [Json(claim).into_response()].into(),
+        ..Fake::default()
+    };
+    let mut rig = rig(2, fake).await;
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [2], "the first one is parked");
+    let status = rig.spool.status().await.unwrap();
+    assert_eq!((status.parked_batches, status.acknowledged_batches), (1, 1));
+    assert_eq!(
+        status.parked_because.as_deref(),
+        Some("batches up to 9 were acknowledged, but only 1 have been sent")
+    );
+    // It is offered again as any parked batch is, and a right response counts.
+    rig.spool.unpark_first().await.unwrap();
+    rig.link.mark_unchanged();
+    rig.sealed.notify_one();
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1, 2]);
+    assert_eq!(rig.spool.status().await.unwrap().contiguous_seq, 2);
+}
+
+#[tokio::test]
 async fn the_server_is_given_the_time_it_asks_for() {
     let busy = (
         StatusCode::TOO_MANY_REQUESTS,
