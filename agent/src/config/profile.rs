@@ -113,6 +113,7 @@ impl UploadPlan {
             },
             resumes_tls: f64::from(self.seal_s) < DAY_S,
             exchange_timeout: EXCHANGE_TIMEOUT,
+            allows_plain_http: false,
         }
     }
 
@@ -131,6 +132,8 @@ pub(crate) struct ConnectionPolicy {
     pub(crate) resumes_tls: bool,
     /// Timeout of a whole exchange, however busy the other side looks.
     pub(crate) exchange_timeout: Duration,
+    /// Unencrypted connections to other computers.
+    pub(crate) allows_plain_http: bool,
 }
 
 /// Returns the size of the largest batch that fits into its short messages.

@@ -14,6 +14,8 @@ use toml::Spanned;
 pub(crate) struct UplinkConfig {
     /// PEM file with the only trusted certificate authority.
     pub(crate) pinned_ca: Option<PathBuf>,
+    /// Allows an http server on another computer, as in a VPN.
+    pub(crate) allow_plain_http: bool,
     /// Cost class of the link: upload interval and daily byte budget.
     pub(crate) profile: Spanned<Profile>,
     /// Daily budget that replaces the profile's.
@@ -32,6 +34,7 @@ impl Default for UplinkConfig {
     fn default() -> UplinkConfig {
         UplinkConfig {
             pinned_ca: None,
+            allow_plain_http: false,
             profile: Spanned::new(0..0, Profile::default()),
             day_kb: None,
             poll_s: None,
@@ -54,6 +57,7 @@ impl UplinkConfig {
     pub(crate) fn connection_policy(&self) -> ConnectionPolicy {
         ConnectionPolicy {
             exchange_timeout: self.exchange_s.duration(),
+            allows_plain_http: self.allow_plain_http,
             ..self.plan().connection_policy()
         }
     }

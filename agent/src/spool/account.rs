@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Measured as IP bytes both ways.
 pub(crate) const REQUEST_BYTES: u64 = 389;
 
-/// Balance of the budget.
+/// Balance of the budget, and what the link costs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct BudgetAccount {
     pub(crate) profile: Profile,
@@ -20,4 +20,7 @@ pub(crate) struct BudgetAccount {
     pub(crate) remaining_bytes: f64,
     /// GNSS time of the last update.
     pub(crate) ship_time: Option<Timestamp>,
+    /// Bytes of the last connection to the server without its requests, as counted at the socket.
+    #[serde(default)]
+    pub(crate) connection_bytes: Option<f64>,
 }

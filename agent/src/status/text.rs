@@ -150,6 +150,9 @@ impl Status {
                 let left = budget.remaining_bytes;
                 write!(out, ", {left:.0} bytes left at {day:.0} a day")?;
             }
+            if let Some(bytes) = budget.connection_bytes {
+                write!(out, ", a connection costs {bytes:.0}")?;
+            }
             writeln!(out)?;
         }
         let spool = &self.spool;
@@ -177,7 +180,7 @@ impl Status {
             let because = spool.parked_because.as_deref().unwrap_or("no reason given");
             writeln!(
                 out,
-                "REFUSED    {} batches were refused by the server: {because}",
+                "REFUSED    {} batches are kept aside: {because}",
                 spool.parked_batches
             )?;
         }
@@ -260,6 +263,7 @@ mod tests {
                 daily_bytes: Some(8_000.0),
                 remaining_bytes: -120.4,
                 ship_time: None,
+                connection_bytes: Some(4_400.0),
             }),
             spool: SpoolStatus {
                 parked_batches: 2,
@@ -280,8 +284,8 @@ mod tests {
             "source     bridge HCHDG  10.0/s  compass 090.0° [compass]\n",
             "not corrected: there is no model yet",
             "link       not enrolled\n",
-            "profile    metered, -120 bytes left at 8000 a day\n",
-            "2 batches were refused by the server: 422 undecodable",
+            "profile    metered, -120 bytes left at 8000 a day, a connection costs 4400\n",
+            "2 batches are kept aside: 422 undecodable",
         ] {
             assert!(text.contains(wanted), "{wanted:?} is not in\n{text}");
         }

@@ -11,7 +11,11 @@
 //! - Evidence of an alert may overdraw the budget by [`OVERDRAFT_DAYS`]. Reports and samples may
 //!   not, and requests without samples leave [`RESERVE_DAYS`] to those. What cannot be afforded
 //!   waits, and is never dropped.
+//! - The balance is of bytes counted at the socket ([`super::meter`]). An expected cost decides what
+//!   may be sent, and is charged until the request is over. The connection in it is what the last
+//!   one cost on this link, with its certificates and proxies.
 
+use super::meter::Traffic;
 use crate::config::UploadPlan;
 use crate::spool::{BudgetAccount, REQUEST_BYTES};
 use binnacle_compass::time::Timestamp;
@@ -22,11 +26,9 @@ const DAY_S: f64 = 86_400.0;
 const MAX_SAVED_DAYS: f64 = 3.0;
 const OVERDRAFT_DAYS: f64 = 2.0;
 const RESERVE_DAYS: f64 = 0.25;
-/// TCP and TLS 1.3 handshakes with a certificate of a private authority. Measured as IP bytes both
-/// ways.
+/// Cost of a connection before one was counted: TCP and TLS 1.3 handshakes with a certificate of a
+/// private authority. Measured as IP bytes both ways.
 const CONNECTION_BYTES: f64 = 1_700.0;
-/// Cost of an attempt without a connection: three first segments.
-const UNANSWERED_BYTES: f64 = 180.0;
 /// Overhead of headers and acknowledgements of a body's segments.
 const SEGMENT_SHARE: f64 = 1.07;
 
@@ -43,16 +45,21 @@ pub(crate) enum Priority {
     Other,
 }
 
+/// Connection of a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Connection {
+    /// One that is open.
+    Open,
+    /// One that has to be opened.
+    New,
+}
+
 /// Budget of a running agent.
 #[derive(Debug)]
 pub(crate) struct Budget {
     account: BudgetAccount,
     /// Time of the last accrual.
     updated_at: Instant,
-    /// Time after the last request for which a connection stays open.
-    connection_lifetime: Duration,
-    /// Time of the last request.
-    last_sent: Option<Instant>,
 }
 
 /// Time by both clocks.
@@ -64,12 +71,7 @@ pub(crate) struct ClockReading {
 
 impl Budget {
     /// Creates a budget with the balance of the last run, or with one day's.
-    pub(crate) fn new(
-        plan: &UploadPlan,
-        before: Option<BudgetAccount>,
-        connection_lifetime: Duration,
-        now: Instant,
-    ) -> Budget {
+    pub(crate) fn new(plan: &UploadPlan, before: Option<BudgetAccount>, now: Instant) -> Budget {
         let day = plan.daily_bytes.unwrap_or_default();
         let before = before.filter(|before| before.remaining_bytes.is_finite());
         let left = before.map_or(day, |before| before.remaining_bytes);
@@ -79,10 +81,11 @@ impl Budget {
                 daily_bytes: plan.daily_bytes,
                 remaining_bytes: left.clamp(-OVERDRAFT_DAYS * day, MAX_SAVED_DAYS * day),
                 ship_time: before.and_then(|before| before.ship_time),
+                connection_bytes: before
+                    .and_then(|before| before.connection_bytes)
+                    .filter(|bytes| bytes.is_finite() && *bytes > 0.0),
             },
             updated_at: now,
-            connection_lifetime,
-            last_sent: None,
         }
     }
 
@@ -104,6 +107,7 @@ impl Budget {
         &mut self,
         priority: Priority,
         bytes: usize,
+        connection: Connection,
         now: ClockReading,
     ) -> Option<Duration> {
         self.accrue(now);
@@ -116,45 +120,41 @@ impl Budget {
         // A cost above the largest balance is allowed at the largest balance.
         let affordable = |cost: f64| (cost + least).min(MAX_SAVED_DAYS * day);
         let missing = |cost: f64| affordable(cost) - self.account.remaining_bytes;
-        if missing(self.cost(bytes, now.monotonic)) <= 0.0 {
+        if missing(self.cost(bytes, connection)) <= 0.0 {
             return None;
         }
         // A connection that is open now will be closed by then.
-        let cost = CONNECTION_BYTES + Budget::request_cost(bytes);
-        let seconds = (missing(cost) / day * DAY_S).ceil();
+        let seconds = (missing(self.cost(bytes, Connection::New)) / day * DAY_S).ceil();
         Some(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX))
     }
 
-    /// Charges a request before it is made. Returns the cost, for a refund.
-    pub(crate) fn charge(&mut self, bytes: usize, now: ClockReading) -> f64 {
+    /// Charges the expected cost of a request before it is made, and returns it.
+    pub(crate) fn charge(
+        &mut self,
+        bytes: usize,
+        connection: Connection,
+        now: ClockReading,
+    ) -> f64 {
         self.accrue(now);
-        let cost = self.cost(bytes, now.monotonic);
+        let cost = self.cost(bytes, connection);
         self.account.remaining_bytes -= cost;
-        self.last_sent = Some(now.monotonic);
         cost
     }
 
-    /// Refunds a request that found no connection.
-    pub(crate) fn refund(&mut self, cost: f64) {
-        self.account.remaining_bytes += cost - UNANSWERED_BYTES.min(cost);
-        self.last_sent = None;
+    /// Charges the counted traffic in place of the expected cost, and learns what a connection costs.
+    pub(crate) fn settle(&mut self, expected: f64, counted: Traffic) {
+        self.account.remaining_bytes += expected - counted.bytes as f64;
+        if let Some(bytes) = counted.connection_bytes {
+            self.account.connection_bytes = Some(bytes as f64);
+        }
     }
 
-    /// Charges the body of a response.
-    pub(crate) fn charge_response(&mut self, bytes: u64) {
-        self.account.remaining_bytes -= bytes as f64 * SEGMENT_SHARE;
-    }
-
-    fn cost(&self, bytes: usize, now: Instant) -> f64 {
-        let is_open = self.last_sent.is_some_and(|last_sent| {
-            now.saturating_duration_since(last_sent) < self.connection_lifetime
-        });
-        let connection = if is_open { 0.0 } else { CONNECTION_BYTES };
-        connection + Budget::request_cost(bytes)
-    }
-
-    fn request_cost(bytes: usize) -> f64 {
-        REQUEST_BYTES as f64 + bytes as f64 * SEGMENT_SHARE
+    fn cost(&self, bytes: usize, connection: Connection) -> f64 {
+        let connection = match connection {
+            Connection::Open => 0.0,
+            Connection::New => self.account.connection_bytes.unwrap_or(CONNECTION_BYTES),
+        };
+        connection + REQUEST_BYTES as f64 + bytes as f64 * SEGMENT_SHARE
     }
 
     fn accrue(&mut self, now: ClockReading) {
@@ -181,10 +181,17 @@ mod tests {
     use crate::config::Profile;
 
     const HOUR: Duration = Duration::from_hours(1);
-    const LASTS: Duration = Duration::from_secs(5);
 
     fn budget(profile: Profile, start: ClockReading) -> Budget {
-        Budget::new(&profile.plan(None), None, LASTS, start.monotonic)
+        Budget::new(&profile.plan(None), None, start.monotonic)
+    }
+
+    /// What a socket counted for a request, on a connection of this cost if it was opened for it.
+    fn counted(bytes: u64, connection_bytes: Option<u64>) -> Traffic {
+        Traffic {
+            bytes: bytes + connection_bytes.unwrap_or_default(),
+            connection_bytes,
+        }
     }
 
     fn start() -> ClockReading {
@@ -211,8 +218,9 @@ mod tests {
         let now = start();
         let mut budget = budget(Profile::Standard, now);
         for _ in 0..1000 {
-            assert_eq!(budget.delay_for(Priority::Other, 4000, now), None);
-            budget.charge(4000, now);
+            let waits = budget.delay_for(Priority::Other, 4000, Connection::New, now);
+            assert_eq!(waits, None);
+            budget.charge(4000, Connection::New, now);
         }
     }
 
@@ -230,11 +238,10 @@ mod tests {
             let mut now = start;
             while now.monotonic < start.monotonic + month {
                 now = after(now, seal);
-                let waits = budget.delay_for(Priority::Samples, bytes, now);
+                let waits = budget.delay_for(Priority::Samples, bytes, Connection::New, now);
                 assert_eq!(waits, None, "{profile}");
-                budget.charge(bytes, now);
-                // The acknowledgement.
-                budget.charge_response(90);
+                let expected = budget.charge(bytes, Connection::New, now);
+                budget.settle(expected, counted(bytes as u64 + 500, Some(1_900)));
             }
         }
     }
@@ -243,38 +250,41 @@ mod tests {
     fn a_backlog_is_sent_as_the_budget_allows_and_alerts_before_that() {
         let start = start();
         let mut budget = budget(Profile::Metered, start);
-        let mut sent = 0;
-        while budget.delay_for(Priority::Samples, 500, start).is_none() {
-            budget.charge(500, start);
+        // The first request opens the connection, which then stays open.
+        budget.charge(500, Connection::New, start);
+        let mut sent = 1;
+        let waits = |budget: &mut Budget, priority| {
+            budget.delay_for(priority, 500, Connection::Open, start)
+        };
+        while waits(&mut budget, Priority::Samples).is_none() {
+            budget.charge(500, Connection::Open, start);
             sent += 1;
         }
         // 8000 bytes less a connection, at some 924 a batch.
         assert_eq!(sent, 6);
-        assert!(budget.delay_for(Priority::Report, 500, start).is_some());
+        assert!(waits(&mut budget, Priority::Report).is_some());
         let mut alerts = 0;
-        while budget.delay_for(Priority::Alert, 500, start).is_none() {
-            budget.charge(500, start);
+        while waits(&mut budget, Priority::Alert).is_none() {
+            budget.charge(500, Connection::Open, start);
             alerts += 1;
         }
         assert!((15..20).contains(&alerts), "{alerts}");
-        let delay_for = budget.delay_for(Priority::Samples, 500, start).unwrap();
-        assert!((HOUR * 48..HOUR * 56).contains(&delay_for), "{delay_for:?}");
-        let later = after(start, delay_for);
-        assert_eq!(budget.delay_for(Priority::Samples, 500, later), None);
+        let delay = waits(&mut budget, Priority::Samples).unwrap();
+        assert!((HOUR * 48..HOUR * 56).contains(&delay), "{delay:?}");
+        let later = after(start, delay);
+        let waits = budget.delay_for(Priority::Samples, 500, Connection::New, later);
+        assert_eq!(waits, None);
     }
 
     #[test]
     fn what_has_no_samples_leaves_a_part_to_those() {
         let now = start();
         let mut budget = budget(Profile::Metered, now);
-        budget.charge(2_700, now);
-        let later = after(now, LASTS);
-        assert_eq!(budget.delay_for(Priority::Samples, 0, later), None);
-        let delay_for = budget.delay_for(Priority::Other, 0, later).unwrap();
-        assert_eq!(
-            budget.delay_for(Priority::Other, 0, after(later, delay_for)),
-            None
-        );
+        budget.charge(2_700, Connection::New, now);
+        let mut waits = |priority, now| budget.delay_for(priority, 0, Connection::New, now);
+        assert_eq!(waits(Priority::Samples, now), None);
+        let delay = waits(Priority::Other, now).unwrap();
+        assert_eq!(waits(Priority::Other, after(now, delay)), None);
     }
 
     #[test]
@@ -283,12 +293,12 @@ mod tests {
         let plan = Profile::VeryMetered.plan(None);
         let mut account = budget(Profile::VeryMetered, start).account();
         account.remaining_bytes = -1e9;
-        let mut budget = Budget::new(&plan, Some(account), LASTS, start.monotonic);
+        let mut budget = Budget::new(&plan, Some(account), start.monotonic);
         assert!((budget.account().remaining_bytes + 6_000.0).abs() < 1e-9);
         let mut now = start;
         for _ in 0..50 {
-            match budget.delay_for(Priority::Samples, 200_000, now) {
-                Some(delay_for) => now = after(now, delay_for),
+            match budget.delay_for(Priority::Samples, 200_000, Connection::New, now) {
+                Some(delay) => now = after(now, delay),
                 None => return,
             }
         }
@@ -299,6 +309,8 @@ mod tests {
     fn no_jump_of_the_ships_clock_earns_more_than_is_ever_saved_or_takes_anything() {
         let mut now = start();
         let mut budget = budget(Profile::Metered, now);
+        let waits =
+            |budget: &mut Budget, now| budget.delay_for(Priority::Samples, 0, Connection::New, now);
         // A week roll-over, there and back.
         for (days, left) in [
             (0.0, 8_000.0),
@@ -307,18 +319,18 @@ mod tests {
             (1.0, 24_000.0),
         ] {
             now.ship = Some(ship_time(days));
-            assert_eq!(budget.delay_for(Priority::Samples, 0, now), None);
+            assert_eq!(waits(&mut budget, now), None);
             let account = budget.account();
             assert!((account.remaining_bytes - left).abs() < 1e-6, "{account:?}");
         }
-        budget.charge(6_000, now);
+        budget.charge(6_000, Connection::New, now);
         let before = budget.account().remaining_bytes;
         now.ship = None;
-        assert_eq!(budget.delay_for(Priority::Samples, 0, now), None);
+        assert_eq!(waits(&mut budget, now), None);
         assert!((budget.account().remaining_bytes - before).abs() < 1e-6);
         // The receiver is silent: the computer's clock serves.
         let later = after(now, HOUR * 3);
-        assert_eq!(budget.delay_for(Priority::Samples, 0, later), None);
+        assert_eq!(waits(&mut budget, later), None);
         assert!((budget.account().remaining_bytes - before - 1_000.0).abs() < 1e-6);
     }
 
@@ -328,14 +340,43 @@ mod tests {
         let mut budget = budget(Profile::Metered, start);
         for hour in 0..72 {
             let now = after(start, HOUR * hour);
-            assert_eq!(
-                budget.delay_for(Priority::Samples, 500, now),
-                None,
-                "{hour}"
-            );
-            let cost = budget.charge(500, now);
-            budget.refund(cost);
+            let waits = budget.delay_for(Priority::Samples, 500, Connection::New, now);
+            assert_eq!(waits, None, "{hour}");
+            let expected = budget.charge(500, Connection::New, now);
+            budget.settle(expected, counted(180, None));
         }
         assert!(budget.account().remaining_bytes > 15_000.0);
+    }
+
+    #[test]
+    fn a_dear_certificate_is_paid_for_and_planned_with_also_after_a_restart() {
+        let start = start();
+        let plan = Profile::VeryMetered.plan(None);
+        let mut first = Budget::new(&plan, None, start.monotonic);
+        let expected = first.charge(500, Connection::New, start);
+        first.settle(expected, counted(900, Some(4_400)));
+        assert!((first.account().remaining_bytes - (3_000.0 - 5_300.0)).abs() < 1e-9);
+        let mut next = Budget::new(&plan, Some(first.account()), start.monotonic);
+        let delay = next
+            .delay_for(Priority::Samples, 500, Connection::New, start)
+            .unwrap();
+        // 2300 bytes overdrawn, 4400 for the connection, 924 for the request.
+        let days = delay.as_secs_f64() / DAY_S;
+        assert!((days - 7_624.0 / 3_000.0).abs() < 1e-4, "{days}");
+        // A month of it stays within the budget, whatever was planned at first.
+        let mut now = start;
+        let mut spent = 5_300.0;
+        while now.monotonic < start.monotonic + HOUR * 24 * 30 {
+            now = match next.delay_for(Priority::Samples, 500, Connection::New, now) {
+                Some(delay) => after(now, delay),
+                None => {
+                    let expected = next.charge(500, Connection::New, now);
+                    next.settle(expected, counted(900, Some(4_400)));
+                    spent += 5_300.0;
+                    after(now, HOUR * 24)
+                }
+            };
+        }
+        assert!((80_000.0..=96_000.0).contains(&spent), "{spent}");
     }
 }

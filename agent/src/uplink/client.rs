@@ -4,39 +4,39 @@
 //! a problem of its own types as a refusal. Anything else, from a harbour's network or a proxy, is
 //! a failure of the link, whatever its status and form.
 
+use super::meter::{Meter, Traffic};
 use super::request::BatchContext;
 use super::request_error::{
     PROBLEM_TYPE_PATH, Problem, RequestError, classify_problem, foreign_response, link_error,
+    timed_out,
 };
+use super::transport::{HttpClient, READ_TIMEOUT, Transport};
 use crate::config::ConnectionPolicy;
 use crate::spool::{Identity, SealedBatch, SpooledAzimuth, StoredReport};
 use anyhow::Context;
+use axum::body::Body;
+use axum::http::header::{AUTHORIZATION, CONTENT_TYPE, HeaderValue, RETRY_AFTER};
+use axum::http::{HeaderMap, Method, Request, StatusCode, Uri};
 use binnacle_wire::batch::StreamId;
 use binnacle_wire::downlink::{self, FORM, ONCE, card_tag};
 use binnacle_wire::messages::{
     BoardAzimuthResponse, Downlink, EnrolRequest, EnrolResponse, LogbookResponse, NewToken,
     OpenStreamResponse,
 };
-use reqwest::header::RETRY_AFTER;
-use reqwest::{RequestBuilder, Response, StatusCode, redirect};
+use futures_util::StreamExt;
 use rustls::RootCertStore;
 use rustls::client::Resumption;
 use rustls::pki_types::CertificateDer;
 use rustls::pki_types::pem::PemObject;
 use rustls::version::TLS13;
 use rustls_platform_verifier::BuilderVerifierExt;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
+use tokio::time::timeout;
 use uuid::Uuid;
 
-/// Timeout of a connection: a TLS handshake over a satellite takes five seconds and may lose
-/// packets.
-const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
-/// Timeout between two bytes. A whole exchange has [`ConnectionPolicy::exchange_timeout`].
-const READ_TIMEOUT: Duration = Duration::from_secs(90);
 /// TLS sessions to resume; there is one server.
 const MAX_TLS_SESSIONS: usize = 4;
 /// Upper bound of a requested pause, whoever on the way asks for it.
@@ -47,13 +47,11 @@ const MAX_RESPONSE_BYTES: usize = 1 << 20;
 /// HTTP client of the server.
 #[derive(Clone, Debug)]
 pub(crate) struct ServerClient {
-    http: reqwest::Client,
+    http: HttpClient,
     /// Holds the TLS session across connections.
-    tls: rustls::ClientConfig,
-    idle_timeout: Duration,
+    transport: Transport,
     exchange_timeout: Duration,
-    /// Bytes of responses since the last call of `take_received_bytes`.
-    received_bytes: Arc<AtomicU64>,
+    meter: Meter,
 }
 
 /// Versions of model and settings that the agent already has.
@@ -88,27 +86,30 @@ impl ServerClient {
             tls.alpn_protocols = vec![ONCE.to_vec(), b"http/1.1".to_vec()];
             Resumption::disabled()
         };
+        let meter = Meter::default();
+        let transport = Transport::new(tls, policy, meter.clone());
         Ok(ServerClient {
-            http: client(&tls, policy.idle_timeout, policy.exchange_timeout)?,
-            tls,
-            idle_timeout: policy.idle_timeout,
+            http: transport.client(),
+            transport,
             exchange_timeout: policy.exchange_timeout,
-            received_bytes: Arc::default(),
+            meter,
         })
     }
 
     /// Closes the connection, if there is one. The next request opens another and resumes its TLS
     /// session.
     pub(crate) fn close_connection(&mut self) {
-        match client(&self.tls, self.idle_timeout, self.exchange_timeout) {
-            Ok(http) => self.http = http,
-            Err(error) => tracing::error!("{error:#}"),
-        }
+        self.http = self.transport.client();
     }
 
-    /// Returns the bytes of responses since the last call.
-    pub(crate) fn take_received_bytes(&self) -> u64 {
-        self.received_bytes.swap(0, Ordering::Relaxed)
+    /// Returns whether a connection is open.
+    pub(crate) fn is_connected(&self) -> bool {
+        self.meter.is_connected()
+    }
+
+    /// Returns the traffic since the last call.
+    pub(crate) fn take_traffic(&self) -> Traffic {
+        self.meter.take()
     }
 
     /// Exchanges a one-time code for a token.
@@ -122,7 +123,7 @@ impl ServerClient {
             agent_version: env!("CARGO_PKG_VERSION").to_owned(),
         };
         let url = format!("{server}/api/v1/agents/enrol");
-        self.send(self.http.post(url).json(&request)).await
+        self.send(post(url).json(&request)).await
     }
 
     /// Requests a token that may replace the agent's.
@@ -131,8 +132,7 @@ impl ServerClient {
         identity: &Identity,
     ) -> Result<NewToken, RequestError> {
         let url = format!("{}/api/v1/agents/token", identity.server);
-        self.send(self.http.post(url).bearer_auth(&identity.token))
-            .await
+        self.send(post(url).bearer(&identity.token)).await
     }
 
     /// Activates the new token; without a response it may or may not be active.
@@ -142,17 +142,15 @@ impl ServerClient {
         new: &NewToken,
     ) -> Result<(), RequestError> {
         let url = format!("{}/api/v1/agents/token", identity.server);
-        let request = self.http.put(url).bearer_auth(&identity.token).json(new);
-        send(&self.received_bytes, request, |body| {
-            body.is_empty().then_some(())
-        })
-        .await
+        let request = put(url).bearer(&identity.token).json(new);
+        self.send_for(request, |body| body.is_empty().then_some(()))
+            .await
     }
 
     /// Opens a new stream for the same compass.
     pub(crate) async fn open_stream(&self, identity: &Identity) -> Result<StreamId, RequestError> {
         let url = format!("{}/api/v1/streams", identity.server);
-        let request = self.http.post(url).bearer_auth(&identity.token);
+        let request = post(url).bearer(&identity.token);
         let opened: OpenStreamResponse = self.send(request).await?;
         Ok(opened.stream)
     }
@@ -168,12 +166,9 @@ impl ServerClient {
         let path = format!("batches/{}", batch.seq);
         let mut url = stream_url(identity, &path, known);
         url.push_str(&context.query(batch));
-        let request = self
-            .http
-            .put(url)
-            .bearer_auth(&identity.token)
-            // No content type: the body is bytes (RFC 9110, 8.3).
-            .body(batch.bytes.clone());
+        let mut request = put(url).bearer(&identity.token);
+        // No content type: the body is bytes (RFC 9110, 8.3).
+        request.body.clone_from(&batch.bytes);
         self.send_for_downlink(request).await
     }
 
@@ -184,7 +179,7 @@ impl ServerClient {
         report: &StoredReport,
     ) -> Result<LogbookResponse, RequestError> {
         let url = format!("{}/api/v1/agents/logbook/{}", identity.server, report.id);
-        let request = self.http.put(url).bearer_auth(&identity.token);
+        let request = put(url).bearer(&identity.token);
         self.send(request.json(&report.sent)).await
     }
 
@@ -195,7 +190,7 @@ impl ServerClient {
         azimuth: &SpooledAzimuth,
     ) -> Result<BoardAzimuthResponse, RequestError> {
         let url = format!("{}/api/v1/agents/azimuths/{}", identity.server, azimuth.id);
-        let request = self.http.put(url).bearer_auth(&identity.token);
+        let request = put(url).bearer(&identity.token);
         self.send(request.json(&azimuth.sent)).await
     }
 
@@ -205,26 +200,22 @@ impl ServerClient {
         identity: &Identity,
         known: KnownVersions,
     ) -> Result<Downlink, RequestError> {
-        let request = self
-            .http
-            .get(stream_url(identity, "downlink", known))
-            .bearer_auth(&identity.token);
+        let url = stream_url(identity, "downlink", known);
+        let request = Outgoing::new(Method::GET, url).bearer(&identity.token);
         self.send_for_downlink(request).await
     }
 }
 
 impl ServerClient {
-    async fn send<T: DeserializeOwned>(&self, request: RequestBuilder) -> Result<T, RequestError> {
-        send(&self.received_bytes, request, |body| {
-            serde_json::from_slice(body).ok()
-        })
-        .await
+    async fn send<T: DeserializeOwned>(&self, request: Outgoing) -> Result<T, RequestError> {
+        self.send_for(request, |body| serde_json::from_slice(body).ok())
+            .await
     }
 
     /// Sends a request whose response is a downlink: compact, or JSON of a server without that
     /// form.
-    async fn send_for_downlink(&self, request: RequestBuilder) -> Result<Downlink, RequestError> {
-        send(&self.received_bytes, request, |body| {
+    async fn send_for_downlink(&self, request: Outgoing) -> Result<Downlink, RequestError> {
+        self.send_for(request, |body| {
             if downlink::is_compact(body) {
                 downlink::decode(body).ok()
             } else {
@@ -233,29 +224,112 @@ impl ServerClient {
         })
         .await
     }
+
+    async fn send_for<T>(
+        &self,
+        request: Outgoing,
+        read: impl FnOnce(&[u8]) -> Option<T>,
+    ) -> Result<T, RequestError> {
+        let exchange = self.exchange(request.into_http()?);
+        let (status, headers, body) = timeout(self.exchange_timeout, exchange)
+            .await
+            .map_err(|_| timed_out())??;
+        if status.is_success() {
+            return read(&body).ok_or_else(|| foreign_response(status));
+        }
+        let retry_after = retry_after(&headers);
+        let problem = serde_json::from_slice::<Problem>(&body).ok();
+        let Some(problem) = problem.filter(|problem| problem.kind.contains(PROBLEM_TYPE_PATH))
+        else {
+            if status.is_server_error() || status == StatusCode::TOO_MANY_REQUESTS {
+                return Err(RequestError::Busy {
+                    problem: format!("the server responded {status}"),
+                    retry_after,
+                });
+            }
+            return Err(foreign_response(status));
+        };
+        Err(classify_problem(status, &problem, retry_after))
+    }
+
+    /// Sends a request and reads the whole response. A redirection is not followed.
+    async fn exchange(
+        &self,
+        request: Request<Body>,
+    ) -> Result<(StatusCode, HeaderMap, Vec<u8>), RequestError> {
+        let response = timeout(READ_TIMEOUT, self.http.request(request))
+            .await
+            .map_err(|_| timed_out())?
+            .map_err(|error| link_error(&error))?;
+        let (parts, body) = response.into_parts();
+        let mut chunks = Body::new(body).into_data_stream();
+        let mut body = Vec::new();
+        while let Some(chunk) = timeout(READ_TIMEOUT, chunks.next())
+            .await
+            .map_err(|_| timed_out())?
+        {
+            body.extend_from_slice(&chunk.map_err(|error| link_error(&error))?);
+            if body.len() > MAX_RESPONSE_BYTES {
+                return Err(foreign_response(parts.status));
+            }
+        }
+        Ok((parts.status, parts.headers, body))
+    }
 }
 
-/// Builds the HTTP client. Offers no protocol by ALPN, so that a server speaks HTTP/1.1.
-fn client(
-    tls: &rustls::ClientConfig,
-    idle_timeout: Duration,
-    exchange_timeout: Duration,
-) -> anyhow::Result<reqwest::Client> {
-    let mut builder = reqwest::Client::builder()
-        .tls_backend_preconfigured(tls.clone())
-        .http1_only()
-        .redirect(redirect::Policy::none())
-        .connect_timeout(CONNECT_TIMEOUT)
-        .read_timeout(READ_TIMEOUT)
-        .timeout(exchange_timeout)
-        .tcp_keepalive(None)
-        .pool_idle_timeout(idle_timeout)
-        .pool_max_idle_per_host(1);
-    #[cfg(target_os = "linux")]
-    {
-        builder = builder.tcp_user_timeout(READ_TIMEOUT);
+/// Request to the server.
+struct Outgoing {
+    method: Method,
+    url: String,
+    headers: HeaderMap,
+    body: Vec<u8>,
+}
+
+fn post(url: String) -> Outgoing {
+    Outgoing::new(Method::POST, url)
+}
+
+fn put(url: String) -> Outgoing {
+    Outgoing::new(Method::PUT, url)
+}
+
+impl Outgoing {
+    fn new(method: Method, url: String) -> Outgoing {
+        Outgoing {
+            method,
+            url,
+            headers: HeaderMap::new(),
+            body: Vec::new(),
+        }
     }
-    builder.build().context("cannot set up TLS")
+
+    fn bearer(mut self, token: &str) -> Outgoing {
+        // A token that is no header value is none that a server gave: it will be refused.
+        if let Ok(mut value) = HeaderValue::try_from(format!("Bearer {token}")) {
+            value.set_sensitive(true);
+            self.headers.insert(AUTHORIZATION, value);
+        }
+        self
+    }
+
+    fn json(mut self, body: &impl Serialize) -> Outgoing {
+        let json = HeaderValue::from_static("application/json");
+        self.headers.insert(CONTENT_TYPE, json);
+        self.body = serde_json::to_vec(body).expect("messages are plain data");
+        self
+    }
+
+    fn into_http(self) -> Result<Request<Body>, RequestError> {
+        let uri: Uri = self
+            .url
+            .parse()
+            .map_err(|error| RequestError::NoConnection(format!("{}: {error}", self.url)))?;
+        let mut request = Request::new(Body::from(self.body));
+        *request.method_mut() = self.method;
+        *request.uri_mut() = uri;
+        *request.headers_mut() = self.headers;
+        Ok(request)
+    }
 }
 
 fn load_root_store(path: &Path) -> anyhow::Result<RootCertStore> {
@@ -287,51 +361,14 @@ fn stream_url(identity: &Identity, path: &str, known: KnownVersions) -> String {
     format!("{server}/api/v1/streams/{stream}/{path}?form={FORM}{card}{settings}")
 }
 
-async fn send<T>(
-    received_bytes: &AtomicU64,
-    request: RequestBuilder,
-    read: impl FnOnce(&[u8]) -> Option<T>,
-) -> Result<T, RequestError> {
-    let response = request.send().await.map_err(|e| link_error(&e))?;
-    let status = response.status();
-    let retry_after = retry_after(&response);
-    let body = body(received_bytes, response).await?;
-    if status.is_success() {
-        return read(&body).ok_or_else(|| foreign_response(status));
-    }
-    let problem = serde_json::from_slice::<Problem>(&body).ok();
-    let Some(problem) = problem.filter(|problem| problem.kind.contains(PROBLEM_TYPE_PATH)) else {
-        if status.is_server_error() || status == StatusCode::TOO_MANY_REQUESTS {
-            return Err(RequestError::Busy {
-                problem: format!("the server responded {status}"),
-                retry_after,
-            });
-        }
-        return Err(foreign_response(status));
-    };
-    Err(classify_problem(status, &problem, retry_after))
-}
-
-fn retry_after(response: &Response) -> Option<Duration> {
-    parse_retry_after(response.headers().get(RETRY_AFTER)?.to_str().ok()?)
+fn retry_after(headers: &HeaderMap) -> Option<Duration> {
+    parse_retry_after(headers.get(RETRY_AFTER)?.to_str().ok()?)
 }
 
 /// Parses whole seconds, up to a limit; the other form, a date, would need the server's clock.
 fn parse_retry_after(text: &str) -> Option<Duration> {
     let requested = text.trim().parse().ok().map(Duration::from_secs)?;
     Some(requested.min(MAX_RETRY_AFTER))
-}
-
-async fn body(received_bytes: &AtomicU64, mut response: Response) -> Result<Vec<u8>, RequestError> {
-    let mut body = Vec::new();
-    while let Some(chunk) = response.chunk().await.map_err(|e| link_error(&e))? {
-        received_bytes.fetch_add(chunk.len() as u64, Ordering::Relaxed);
-        body.extend_from_slice(&chunk);
-        if body.len() > MAX_RESPONSE_BYTES {
-            return Err(foreign_response(response.status()));
-        }
-    }
-    Ok(body)
 }
 
 #[cfg(test)]

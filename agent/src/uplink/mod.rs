@@ -7,8 +7,8 @@
 //!   is sent again, byte for byte.
 //! - No failure loses data or stops the agent; each is shown on the page in words.
 //! - Evidence of an alert goes before everything else, and ends a pause.
-//! - Nothing is sent that the daily budget does not allow ([`budget`]). A request is charged, and
-//!   the charge stored, before it is sent.
+//! - Nothing is sent that the daily budget does not allow ([`budget`]). The expected cost of a request
+//!   is charged, and the charge stored, before it is sent; afterwards what it cost at the socket.
 //! - A report for the logbook goes before the other batches: it is short, and changes how they are
 //!   interpreted. A refused report blocks nothing.
 //! - A new model or new settings are stored first and then take effect at once.
@@ -16,20 +16,23 @@
 mod backoff;
 mod budget;
 mod client;
+mod meter;
 mod reports;
 mod request;
 mod request_error;
 mod response;
 mod start;
 mod status;
+mod transport;
 
 pub(crate) use client::ServerClient;
 pub(crate) use request_error::RequestError;
 pub(crate) use start::{UplinkHandle, prepare};
 pub(crate) use status::{LinkState, LinkStatus, Publisher};
+pub(crate) use transport::ensure_encrypted;
 
 use backoff::Backoff;
-use budget::{Budget, ClockReading, Priority};
+use budget::{Budget, ClockReading, Connection, Priority};
 use client::KnownVersions;
 use reports::ReportPauses;
 use request::BatchContext;
@@ -160,7 +163,7 @@ impl Uplink {
                 return Ok(NextStep::Idle(left));
             }
         }
-        if let Some(wait) = self.budget.delay_for(priority, bytes, self.now()) {
+        if let Some(wait) = self.delay_for(priority, bytes) {
             return Ok(NextStep::Idle(wait));
         }
         if let Some(batch) = &batch
@@ -180,7 +183,7 @@ impl Uplink {
             }
             None => self.client.downlink(&identity, known).await,
         };
-        self.settle_cost(cost, result.as_ref().err()).await?;
+        self.settle(cost).await?;
         match result {
             Ok(downlink) => {
                 *last_response = Some(Instant::now());
@@ -213,22 +216,32 @@ impl Uplink {
         }
     }
 
-    /// Charges a request and stores the balance: an agent that dies of it again and again spends no
-    /// more.
+    /// Returns the delay before a body may be sent; `None` for none.
+    fn delay_for(&mut self, priority: Priority, bytes: usize) -> Option<Duration> {
+        let (connection, now) = (self.connection(), self.now());
+        self.budget.delay_for(priority, bytes, connection, now)
+    }
+
+    fn connection(&self) -> Connection {
+        if self.client.is_connected() {
+            Connection::Open
+        } else {
+            Connection::New
+        }
+    }
+
+    /// Charges the expected cost of a request and stores the balance: an agent that dies of it again
+    /// and again spends no more.
     async fn charge(&mut self, bytes: usize) -> sqlx::Result<f64> {
         self.exchange_open = true;
-        let cost = self.budget.charge(bytes, self.now());
+        let cost = self.budget.charge(bytes, self.connection(), self.now());
         self.spool.save_account(&self.budget.account()).await?;
         Ok(cost)
     }
 
-    /// Charges the response, or refunds a request without a connection.
-    async fn settle_cost(&mut self, cost: f64, error: Option<&RequestError>) -> sqlx::Result<()> {
-        if let Some(RequestError::NoConnection(_)) = error {
-            self.budget.refund(cost);
-        }
-        self.budget
-            .charge_response(self.client.take_received_bytes());
+    /// Charges what was counted at the socket in place of the expected cost.
+    async fn settle(&mut self, expected: f64) -> sqlx::Result<()> {
+        self.budget.settle(expected, self.client.take_traffic());
         self.spool.save_account(&self.budget.account()).await
     }
 

@@ -61,12 +61,12 @@ impl Uplink {
         report: &Report,
     ) -> sqlx::Result<NextStep> {
         let bytes = report.bytes();
-        if let Some(wait) = self.budget.delay_for(Priority::Report, bytes, self.now()) {
+        if let Some(wait) = self.delay_for(Priority::Report, bytes) {
             return Ok(NextStep::Idle(wait));
         }
         let cost = self.charge(bytes).await?;
         let result = self.put_report(identity, report).await?;
-        self.settle_cost(cost, result.as_ref().err()).await?;
+        self.settle(cost).await?;
         match result {
             Ok(()) => {
                 self.backoff.reset();

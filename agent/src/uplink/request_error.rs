@@ -1,6 +1,7 @@
 //! Reasons for a failed request.
 
-use reqwest::StatusCode;
+use axum::http::StatusCode;
+use hyper_util::client::legacy;
 use rustls::CertificateError;
 use serde::Deserialize;
 use std::fmt;
@@ -26,7 +27,7 @@ pub(crate) enum RequestError {
     Unauthorized(String),
     /// The resource does not exist; for a stream, the server lost it.
     NotFound(String),
-    /// The server refuses these bytes for good.
+    /// The server refuses these bytes for good, or what it says of them cannot be true.
     Refused(String),
 }
 
@@ -129,26 +130,32 @@ fn describe_certificate_error(error: &rustls::Error) -> Option<&'static str> {
     })
 }
 
+/// Returns the error of a response that did not come in time.
+pub(super) fn timed_out() -> RequestError {
+    RequestError::Link("no response in time".to_owned())
+}
+
 /// Converts a transport error. The innermost cause says most: "connection refused", "certificate
 /// expired".
-pub(super) fn link_error(error: &reqwest::Error) -> RequestError {
-    let mut cause: &dyn std::error::Error = error;
+pub(super) fn link_error(error: &(dyn std::error::Error + 'static)) -> RequestError {
+    let is_connect = error
+        .downcast_ref::<legacy::Error>()
+        .is_some_and(legacy::Error::is_connect);
+    let mut cause = error;
     while let Some(inner) = cause.source() {
         cause = inner;
     }
-    let kind = if error.is_timeout() {
-        "no response in time"
-    } else if error.is_connect() {
+    let kind = if is_connect {
         "cannot connect"
     } else {
         "the connection broke"
     };
     let tls = find_tls_error(error);
     let problem = match tls.and_then(describe_certificate_error) {
-        Some(classify_problem) => classify_problem.to_owned(),
+        Some(problem) => problem.to_owned(),
         None => format!("{kind}: {cause}"),
     };
-    if error.is_connect() && tls.is_none() {
+    if is_connect && tls.is_none() {
         RequestError::NoConnection(problem)
     } else {
         RequestError::Link(problem)

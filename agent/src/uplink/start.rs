@@ -66,12 +66,7 @@ pub(crate) async fn prepare(
             config.retry_max_s.get_ref().duration(),
         ),
         poll: config.poll(),
-        budget: Budget::new(
-            &plan,
-            account,
-            connection_policy.idle_timeout,
-            Instant::now(),
-        ),
+        budget: Budget::new(&plan, account, Instant::now()),
         ship_time: uplink_handle.ship_time.subscribe(),
         publisher,
         keeps_connection: plan.keeps_connection(),

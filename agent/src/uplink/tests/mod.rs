@@ -239,12 +239,7 @@ async fn rig_with(
         client: ServerClient::new(None, &plan.connection_policy()).unwrap(),
         backoff: Backoff::new(Duration::from_millis(10), Duration::from_millis(40)),
         poll: Duration::from_hours(1),
-        budget: Budget::new(
-            plan,
-            account,
-            plan.connection_policy().idle_timeout,
-            Instant::now(),
-        ),
+        budget: Budget::new(plan, account, Instant::now()),
         ship_time: ship_time.subscribe(),
         publisher: Publisher {
             model: watch::channel(None).0,
