@@ -182,6 +182,22 @@ async fn a_wrong_code_is_refused_and_nothing_is_kept() {
 }
 
 #[tokio::test]
+async fn a_code_is_not_sent_unencrypted_to_another_computer() {
+    let agent = Agent::new(nowhere());
+    let server = "http://192.0.2.1:8080";
+    let done = agent
+        .call(&["enrol", "--server", server, "--code", "CODE"])
+        .await;
+    let said = text(&done.stderr);
+    assert_eq!(done.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("http to 192.0.2.1 would send the token unencrypted: use https"),
+        "{said}"
+    );
+    assert!(!agent.spool().exists());
+}
+
+#[tokio::test]
 async fn a_hold_reaches_the_running_agent_and_outlasts_it() {
     let bridge = Bridge::new(0).await;
     let agent = Agent::new(bridge.address);

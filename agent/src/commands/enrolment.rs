@@ -3,11 +3,16 @@
 use super::bad_input::BadInput;
 use crate::config::Config;
 use crate::spool::{Identity, Spool};
-use crate::uplink::{RequestError, ServerClient};
+use crate::uplink::{RequestError, ServerClient, ensure_encrypted};
+use axum::http::Uri;
 use std::io::Write;
 
 pub(super) async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::Result<()> {
     let server = server_url(server)?;
+    if !config.uplink.allow_plain_http {
+        ensure_encrypted(&server).map_err(|refused| BadInput(refused.to_string()))?;
+    }
+    let server = server.to_string().trim_end_matches('/').to_owned();
     let client = ServerClient::new(
         config.uplink.pinned_ca.as_deref(),
         &config.uplink.connection_policy(),
@@ -66,7 +71,7 @@ pub(super) async fn rotate_token(config: &Config) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn server_url(text: &str) -> Result<String, BadInput> {
+fn server_url(text: &str) -> Result<Uri, BadInput> {
     let bad = |why: &str| BadInput(format!("--server {text:?} {why}"));
     let url = reqwest::Url::parse(text).map_err(|e| bad(&format!("is not a URL: {e}")))?;
     if !matches!(url.scheme(), "http" | "https") || url.host().is_none() {
@@ -75,12 +80,8 @@ fn server_url(text: &str) -> Result<String, BadInput> {
     if url.query().is_some() || url.fragment().is_some() || !url.username().is_empty() {
         return Err(bad("must be scheme, host, port and path only"));
     }
-    if url.scheme() == "http"
-        && !matches!(url.host_str(), Some("localhost" | "127.0.0.1" | "[::1]"))
-    {
-        tracing::warn!("without https the token is sent unencrypted");
-    }
-    Ok(url.as_str().trim_end_matches('/').to_owned())
+    let url = url.as_str().parse();
+    url.map_err(|e| bad(&format!("is not a URL: {e}")))
 }
 
 #[cfg(test)]
@@ -88,14 +89,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_server_is_a_url_without_a_slash_at_its_end() {
+    fn a_server_is_a_url_of_scheme_host_port_and_path() {
         assert_eq!(
-            server_url("https://b.example/").unwrap(),
-            "https://b.example"
+            server_url("https://B.example/").unwrap(),
+            "https://b.example/"
         );
         assert_eq!(
             server_url("http://127.0.0.1:8080").unwrap(),
-            "http://127.0.0.1:8080"
+            "http://127.0.0.1:8080/"
         );
         for wrong in [
             "b.example",

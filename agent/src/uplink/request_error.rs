@@ -96,7 +96,7 @@ pub(super) fn foreign_response(status: StatusCode) -> RequestError {
 }
 
 /// Returns the TLS error in a chain of causes: then there was a connection, and it cost something.
-fn find_tls_error<'a>(error: &'a (dyn std::error::Error + 'static)) -> Option<&'a rustls::Error> {
+fn find_tls_error(error: &Cause) -> Option<&rustls::Error> {
     // The inner error of an input or output error is not among its causes.
     let wrapped = error.downcast_ref::<std::io::Error>();
     let wrapped = wrapped.and_then(std::io::Error::get_ref);
@@ -130,6 +130,9 @@ fn describe_certificate_error(error: &rustls::Error) -> Option<&'static str> {
     })
 }
 
+/// Error of the transport, or a cause of it.
+type Cause = dyn std::error::Error + 'static;
+
 /// Returns the error of a response that did not come in time.
 pub(super) fn timed_out() -> RequestError {
     RequestError::Link("no response in time".to_owned())
@@ -137,7 +140,7 @@ pub(super) fn timed_out() -> RequestError {
 
 /// Converts a transport error. The innermost cause says most: "connection refused", "certificate
 /// expired".
-pub(super) fn link_error(error: &(dyn std::error::Error + 'static)) -> RequestError {
+pub(super) fn link_error(error: &Cause) -> RequestError {
     let is_connect = error
         .downcast_ref::<legacy::Error>()
         .is_some_and(legacy::Error::is_connect);

@@ -136,4 +136,24 @@ async fn a_failed_handshake_is_charged_and_a_missing_server_is_not() {
         matches!(nobody, Err(RequestError::NoConnection(_))),
         "{nobody:?}"
     );
+    assert!(distrusting.take_traffic().bytes > 1_000);
+    let attempt = client.take_traffic();
+    assert!((1..300).contains(&attempt.bytes), "{attempt:?}");
+    assert_eq!(attempt.connection_bytes, None);
+}
+
+#[tokio::test]
+async fn no_token_goes_to_another_computer_unencrypted_unless_it_is_allowed() {
+    let (_, pem, _) = tls_server().await;
+    let client = trusting_client(&pem, Profile::Standard);
+    let elsewhere = identity("http://192.0.2.1:8080".to_owned());
+    let refused = client.downlink(&elsewhere, KnownVersions::default()).await;
+    let Err(RequestError::NoConnection(said)) = refused else {
+        panic!("{refused:?}");
+    };
+    assert!(
+        said.contains("http to 192.0.2.1 would send the token unencrypted"),
+        "{said}"
+    );
+    assert_eq!(client.take_traffic().bytes, 0, "nothing was sent");
 }
