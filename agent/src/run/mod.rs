@@ -9,6 +9,7 @@ mod alert_watch;
 mod bridge_alerts;
 mod heading;
 mod live_status;
+mod service_manager;
 mod start;
 mod store_samples;
 
@@ -29,6 +30,7 @@ use binnacle_nmea::sentence::Acn;
 use binnacle_observation::Observation;
 use binnacle_output::{AlertSentences, HeadingSentences, Outputs};
 use binnacle_wire::alert::ShipAlert;
+use service_manager::ServiceManager;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
@@ -46,6 +48,7 @@ const TICK: Duration = Duration::from_secs(1);
 pub(crate) async fn run(config: Config, shutdown: CancellationToken) -> anyhow::Result<()> {
     let (spool, _alone) = Spool::open_for_agent(&config.data_dir).await?;
     let agent = Agent::start(config, spool.clone(), &shutdown).await?;
+    ServiceManager::report_ready();
     agent.run(shutdown).await;
     spool.set_page_address(None).await.ok();
     spool.close().await;
@@ -83,6 +86,7 @@ struct Agent {
     alarm: Option<AlarmSentence>,
     alert_sentences: Option<AlertSentences>,
     status: watch::Sender<Arc<Status>>,
+    service_manager: ServiceManager,
     uplink: tokio::task::JoinHandle<()>,
     unstored: Unstored,
     windows: Tally,
@@ -141,6 +145,7 @@ impl Agent {
                 }
             }
         }
+        ServiceManager::report_stopping();
         self.stop().await;
     }
 
@@ -217,6 +222,9 @@ impl Agent {
             }
         }
         self.source_problems.clone_from(&status.source_problems);
+        if !self.uplink.is_finished() {
+            self.service_manager.feed_watchdog(&status);
+        }
         self.status.send_replace(Arc::new(status));
     }
 

@@ -1,6 +1,6 @@
 //! Start of the agent.
 
-use super::{Agent, CHANNEL_CAPACITY, Unstored};
+use super::{Agent, CHANNEL_CAPACITY, ServiceManager, Unstored};
 use crate::acquisition::Acquisition;
 use crate::alert::{AlarmSentence, AlertMonitor, DifferenceMonitor};
 use crate::clock;
@@ -110,6 +110,7 @@ impl Agent {
                 .then(|| AlertSentences::new(config.output.talker)),
             alarm: config.output.alarm_sentence.then(AlarmSentence::default),
             status,
+            service_manager: ServiceManager::default(),
             uplink,
             unstored,
             windows: Tally::default(),

@@ -23,4 +23,7 @@ pub(crate) struct BudgetAccount {
     /// Bytes of the last connection to the server without its requests, as counted at the socket.
     #[serde(default)]
     pub(crate) connection_bytes: Option<f64>,
+    /// Bytes counted at the socket since the agent was installed.
+    #[serde(default)]
+    pub(crate) total_bytes: f64,
 }

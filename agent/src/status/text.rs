@@ -6,6 +6,21 @@ use binnacle_wire::messages::CardWithdrawn;
 use std::fmt::Write;
 
 impl Status {
+    /// Formats the status in one line, for the service manager.
+    pub(crate) fn line(&self) -> String {
+        let heading = match &self.heading.problem {
+            None => "the heading is corrected".to_owned(),
+            Some(problem) => format!("the heading is not corrected: {problem}"),
+        };
+        let link = self.link.state.words();
+        let waiting = self.spool.waiting_batches;
+        let storage = match &self.storage_problem {
+            None => String::new(),
+            Some(problem) => format!("; {problem}"),
+        };
+        format!("{heading}; link {link}, {waiting} batches to send{storage}")
+    }
+
     /// Formats the status for a terminal.
     pub(crate) fn text(&self) -> String {
         let mut out = String::new();
@@ -134,9 +149,7 @@ impl Status {
     }
 
     fn write_link(&self, out: &mut String) -> std::fmt::Result {
-        let state = serde_json::to_value(self.link.state).unwrap_or_default();
-        let state = state.as_str().unwrap_or_default().replace('_', " ");
-        write!(out, "link       {state}")?;
+        write!(out, "link       {}", self.link.state.words())?;
         if let Some(problem) = &self.link.problem {
             write!(out, ": {problem}")?;
         }
@@ -153,6 +166,7 @@ impl Status {
             if let Some(bytes) = budget.connection_bytes {
                 write!(out, ", a connection costs {bytes:.0}")?;
             }
+            write!(out, ", {:.1} kB in all", budget.total_bytes / 1e3)?;
             writeln!(out)?;
         }
         let spool = &self.spool;
@@ -264,6 +278,7 @@ mod tests {
                 remaining_bytes: -120.4,
                 ship_time: None,
                 connection_bytes: Some(4_400.0),
+                total_bytes: 12_345.0,
             }),
             spool: SpoolStatus {
                 parked_batches: 2,
@@ -272,6 +287,12 @@ mod tests {
             },
             ..Status::default()
         };
+        let line = status.line();
+        assert_eq!(
+            line,
+            "the heading is not corrected: there is no model yet; link not enrolled, 0 batches to \
+             send; samples cannot be stored"
+        );
         let text = status.text();
         for wanted in [
             "0.1.0 not running",
@@ -284,7 +305,7 @@ mod tests {
             "source     bridge HCHDG  10.0/s  compass 090.0° [compass]\n",
             "not corrected: there is no model yet",
             "link       not enrolled\n",
-            "profile    metered, -120 bytes left at 8000 a day, a connection costs 4400\n",
+            "profile    metered, -120 bytes left at 8000 a day, a connection costs 4400, 12.3 kB in all\n",
             "2 batches are kept aside: 422 undecodable",
         ] {
             assert!(text.contains(wanted), "{wanted:?} is not in\n{text}");

@@ -84,6 +84,7 @@ impl Budget {
                 connection_bytes: before
                     .and_then(|before| before.connection_bytes)
                     .filter(|bytes| bytes.is_finite() && *bytes > 0.0),
+                total_bytes: before.map_or(0.0, |before| before.total_bytes),
             },
             updated_at: now,
         }
@@ -143,7 +144,9 @@ impl Budget {
 
     /// Charges the counted traffic in place of the expected cost, and learns what a connection costs.
     pub(crate) fn settle(&mut self, expected: f64, counted: Traffic) {
-        self.account.remaining_bytes += expected - counted.bytes as f64;
+        let bytes = counted.bytes as f64;
+        self.account.remaining_bytes += expected - bytes;
+        self.account.total_bytes += bytes;
         if let Some(bytes) = counted.connection_bytes {
             self.account.connection_bytes = Some(bytes as f64);
         }
@@ -186,7 +189,7 @@ mod tests {
         Budget::new(&profile.plan(None), None, start.monotonic)
     }
 
-    /// What a socket counted for a request, on a connection of this cost if it was opened for it.
+    /// Traffic of a request, on a connection of this cost if it was opened for it.
     fn counted(bytes: u64, connection_bytes: Option<u64>) -> Traffic {
         Traffic {
             bytes: bytes + connection_bytes.unwrap_or_default(),
@@ -356,6 +359,7 @@ mod tests {
         let expected = first.charge(500, Connection::New, start);
         first.settle(expected, counted(900, Some(4_400)));
         assert!((first.account().remaining_bytes - (3_000.0 - 5_300.0)).abs() < 1e-9);
+        assert!((first.account().total_bytes - 5_300.0).abs() < 1e-9);
         let mut next = Budget::new(&plan, Some(first.account()), start.monotonic);
         let delay = next
             .delay_for(Priority::Samples, 500, Connection::New, start)

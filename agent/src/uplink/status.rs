@@ -33,6 +33,19 @@ pub(crate) enum LinkState {
     Refused,
 }
 
+impl LinkState {
+    /// Returns the state in words.
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            LinkState::NotEnrolled => "not enrolled",
+            LinkState::Connecting => "connecting",
+            LinkState::Up => "up",
+            LinkState::Down => "down",
+            LinkState::Refused => "refused",
+        }
+    }
+}
+
 /// Publisher of the server's decisions.
 #[derive(Debug)]
 pub(crate) struct Publisher {

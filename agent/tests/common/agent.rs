@@ -2,7 +2,7 @@
 
 use rustix::process::{Pid, Signal, kill_process};
 use std::net::SocketAddr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Output, Stdio};
 use tempfile::TempDir;
 use tokio::io::{AsyncBufReadExt, BufReader, Lines};
@@ -27,6 +27,7 @@ pub(crate) fn command() -> Command {
     command
         .stdin(Stdio::null())
         .kill_on_drop(true)
+        .env_remove("NOTIFY_SOCKET")
         .env_remove("BINNACLE_LOG");
     command
 }
@@ -95,7 +96,17 @@ stale_s = 3
 
     /// Starts the agent and waits until it is ready.
     pub(crate) async fn run(&self) -> Running {
+        self.start(command()).await
+    }
+
+    /// Like [`Agent::run`], with a variable in its environment.
+    pub(crate) async fn run_with(&self, variable: &str, value: &Path) -> Running {
         let mut command = command();
+        command.env(variable, value);
+        self.start(command).await
+    }
+
+    async fn start(&self, mut command: Command) -> Running {
         command.arg("run").arg("--config").arg(self.config());
         let mut process = command.stderr(Stdio::piped()).spawn().unwrap();
         let mut log = BufReader::new(process.stderr.take().unwrap()).lines();

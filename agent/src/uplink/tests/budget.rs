@@ -10,6 +10,7 @@ fn left(bytes: f64) -> BudgetAccount {
         remaining_bytes: bytes,
         ship_time: Some(time()),
         connection_bytes: None,
+        total_bytes: 0.0,
     }
 }
 
