@@ -18,6 +18,7 @@ use binnacle_platform::event_stream::EventListener;
 use binnacle_platform::mail::Mailer;
 use binnacle_platform::tls::TlsListener;
 use binnacle_platform::{audit, outbox, webhooks};
+use sd_notify::NotifyState;
 use std::future::Future;
 use std::io::Write;
 use std::net::SocketAddr;
@@ -115,8 +116,10 @@ where
     let service = routes::router(state).into_make_service_with_connect_info::<Peer>();
     let serving =
         axum::serve(listener, service).with_graceful_shutdown(stopping.clone().cancelled_owned());
+    notify_service_manager(NotifyState::Ready);
     let deadline = async {
         stopping.cancelled().await;
+        notify_service_manager(NotifyState::Stopping);
         tokio::time::sleep(GRACE).await;
     };
     tokio::select! {
@@ -142,6 +145,13 @@ async fn stop_on_signal(app: App) {
         _ = tokio::signal::ctrl_c() => {}
     }
     app.stopping.cancel();
+}
+
+/// Sends a state to the service manager, if one has started the server.
+fn notify_service_manager(state: NotifyState<'_>) {
+    if let Err(error) = sd_notify::notify(&[state]) {
+        warn!(%error, "the service manager cannot be reached");
+    }
 }
 
 /// Prints the address for whoever started the server.

@@ -11,6 +11,7 @@ mod migration;
 mod openapi;
 mod plan;
 mod schedule;
+mod service_manager;
 mod validate;
 
 use binnacle_server_testing::program;
