@@ -15,7 +15,7 @@ use crate::run;
 use crate::sampler::Exclusion;
 use anyhow::Context;
 use bad_input::BadInput;
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use configuration::load;
 use discover::discover;
 use enrolment::{enrol, rotate_token};
@@ -157,6 +157,11 @@ impl HoldArgument {
     }
 }
 
+/// Returns the commands and their arguments, for the manual page.
+pub fn command_line() -> clap::Command {
+    Cli::command()
+}
+
 /// Runs the command line and returns the exit code of the process.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -250,7 +255,6 @@ mod tests {
 
     #[test]
     fn the_commands_are_well_formed() {
-        use clap::CommandFactory;
-        Cli::command().debug_assert();
+        command_line().debug_assert();
     }
 }
