@@ -22,9 +22,8 @@ web: web/dist/index.html ## Build the dashboard
 build: web ## Build the three programs, optimised
 	$(CARGO) build --release --locked -p binnacle-server -p binnacle-agent -p binnacle-simulator
 
-deb: setup ## Make the agent's Debian package
-	$(CARGO) build --release --locked -p binnacle-agent
-	@scripts/deb
+deb: setup ## Make the agent's Debian package and check it (ARCH=arm64)
+	@scripts/deb $(ARCH)
 
 demo: build ## Sail a simulated fleet and open the dashboard (DAYS=60, PORT=8080)
 	@scripts/demo
