@@ -7,6 +7,7 @@ use crate::ship::Ship;
 use anyhow::{Context, Result, ensure};
 use binnacle_compass::sample::Sample;
 use binnacle_wire::decode;
+use serde_json::Value;
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{Connection, PgConnection, SqliteConnection};
 use std::str::FromStr;
@@ -55,17 +56,35 @@ pub struct Acknowledged {
     pub crc32: i64,
 }
 
+/// Returns the bytes that the agent has counted at its socket, and those of its last connection.
+///
+/// # Errors
+/// Fails when the spool cannot be read, or has none.
+pub async fn counted_bytes(ship: &Ship) -> Result<(f64, f64)> {
+    let mut db = open(ship).await?;
+    let account: String = sqlx::query_scalar("SELECT value FROM state WHERE name = 'account'")
+        .fetch_one(&mut db)
+        .await?;
+    let account: Value = serde_json::from_str(&account)?;
+    let bytes = |name: &str| account[name].as_f64().with_context(|| account.to_string());
+    Ok((bytes("total_bytes")?, bytes("connection_bytes")?))
+}
+
+async fn open(ship: &Ship) -> Result<SqliteConnection> {
+    let file = ship.data_dir().join("spool.db");
+    let options = SqliteConnectOptions::new().filename(&file).read_only(true);
+    SqliteConnection::connect_with(&options)
+        .await
+        .with_context(|| file.display().to_string())
+}
+
 impl Spool {
     /// Reads the spool as it is now.
     ///
     /// # Errors
     /// Fails when there is none, or it cannot be read.
     pub async fn read(ship: &Ship) -> Result<Spool> {
-        let file = ship.data_dir().join("spool.db");
-        let options = SqliteConnectOptions::new().filename(&file).read_only(true);
-        let mut db = SqliteConnection::connect_with(&options)
-            .await
-            .with_context(|| file.display().to_string())?;
+        let mut db = open(ship).await?;
         // One snapshot: a batch may be acknowledged between two statements.
         let mut db = db.begin().await?;
         let rows: Vec<(String, i64, i64, i64)> = sqlx::query_as(

@@ -7,6 +7,7 @@ use crate::sailing::{TIMEOUT, day, sail_until, wait_until_uploaded};
 use crate::{ServerProcess, Ship, Voyage, eventually};
 use anyhow::Result;
 use binnacle_compass::time::Timestamp;
+use std::net::IpAddr;
 use std::path::Path;
 use tempfile::TempDir;
 use uuid::Uuid;
@@ -40,6 +41,18 @@ impl ShipOnLink {
     /// # Errors
     /// Fails when something does not start.
     pub async fn start(scenario: &str, uplink: &str) -> Result<ShipOnLink> {
+        ShipOnLink::start_with(scenario, uplink, Certificates::make).await
+    }
+
+    /// Like [`ShipOnLink::start`], with certificates that `certify` makes.
+    ///
+    /// # Errors
+    /// Fails when something does not start.
+    pub async fn start_with(
+        scenario: &str,
+        uplink: &str,
+        certify: impl FnOnce(&Path, IpAddr) -> Result<Certificates>,
+    ) -> Result<ShipOnLink> {
         let folder = tempfile::tempdir()?;
         let mut satellite = Satellite::launch().await?;
         // Set before anything is sent: TCP would remember a better link for a
@@ -50,7 +63,7 @@ impl ShipOnLink {
             ..Conditions::default()
         };
         satellite.set(conditions).await?;
-        let tls = Certificates::make(folder.path(), SERVER)?;
+        let tls = certify(folder.path(), SERVER)?;
         let server = ServerProcess::start_with_tls(folder.path(), SERVER, &tls).await?;
         let (vessel, code) = server.create_vessel("ship").await?;
         let pace = Pace::FastUntil(day(0.0));

@@ -3,11 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Result, ensure};
-use binnacle_tests::ShipOnLink;
+use binnacle_tests::link::chains::Chain;
 use binnacle_tests::link::satellite::{Conditions, Tally, ensure_used};
 use binnacle_tests::process::namespace::in_own_network;
-use binnacle_tests::records::Spool;
-use binnacle_tests::sailing::day;
+use binnacle_tests::records::{Spool, counted_bytes};
+use binnacle_tests::sailing::{TIMEOUT, day};
+use binnacle_tests::{ShipOnLink, eventually};
+use std::path::Path;
 use std::time::Duration;
 use tokio::time::interval;
 
@@ -97,6 +99,43 @@ fn a_batch_a_day_costs_few_bytes_packets_and_all() {
 fn a_batch_an_hour_costs_few_bytes_packets_and_all() {
     let name = "a_batch_an_hour_costs_few_bytes_packets_and_all";
     in_own_network(name, costs(HOURLY));
+}
+
+#[test]
+fn the_agent_counts_what_its_server_s_certificates_cost() {
+    let name = "the_agent_counts_what_its_server_s_certificates_cost";
+    in_own_network(name, async {
+        let mut costs = Vec::new();
+        for chain in [Chain::EcdsaLeaf, Chain::RsaTwo, Chain::RsaThree] {
+            costs.push(cost_of_chain(chain).await?);
+        }
+        ensure!(costs.is_sorted(), "{costs:?}");
+        Ok(())
+    });
+}
+
+/// Returns the cost of a day's exchange with a server of this chain, in bytes on the link.
+async fn cost_of_chain(chain: Chain) -> Result<f64> {
+    let certify = |folder: &Path, server| chain.make(folder, server);
+    let uplink = "profile = \"metered\"";
+    let mut remote = ShipOnLink::start_with("month.toml", uplink, certify).await?;
+    let first_contact = async || match counted_bytes(&remote.ship).await {
+        Ok((total, _)) if total > 0.0 => Ok(Ok(total)),
+        other => Ok(Err(format!("{other:?}"))),
+    };
+    let before = eventually("the ship calls", TIMEOUT, first_contact).await?;
+    let carried_before = remote.satellite.tally().await?.bytes() as f64;
+    sail_days(&mut remote, &DAILY, 0, 1).await?;
+    let (after, connection) = counted_bytes(&remote.ship).await?;
+    let carried = remote.satellite.tally().await?.bytes() as f64 - carried_before;
+    let counted = after - before;
+    println!("{chain:?}: {carried:.0} bytes, {counted:.0} counted, {connection:.0} a connection");
+    remote.check_and_stop().await?;
+    ensure!(
+        (counted / carried - 1.0).abs() < 0.1,
+        "{counted} of {carried}"
+    );
+    Ok(carried)
 }
 
 /// A link that is up for 20 s every ten minutes, with a round trip of 1.5 s.

@@ -1,4 +1,5 @@
 //! Links between a ship and a server.
 
+pub mod chains;
 pub mod gateway;
 pub mod satellite;

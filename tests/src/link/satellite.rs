@@ -215,6 +215,30 @@ impl Certificates {
         Ok(made)
     }
 
+    /// Writes certificates of another kind.
+    ///
+    /// # Errors
+    /// Fails when the folder cannot be written.
+    pub(super) fn write(
+        folder: &Path,
+        server: IpAddr,
+        authority: &str,
+        chain: &str,
+        key: &KeyPair,
+    ) -> Result<Certificates> {
+        let written = Certificates {
+            server,
+            issuer_key: String::new(),
+            authority: folder.join("authority.pem"),
+            chain: folder.join("chain.pem"),
+            key: folder.join("key.pem"),
+        };
+        std::fs::write(&written.authority, authority)?;
+        std::fs::write(&written.chain, chain)?;
+        std::fs::write(&written.key, key.serialize_pem())?;
+        Ok(written)
+    }
+
     /// Gives the server another certificate of the same authority.
     ///
     /// # Errors
