@@ -5,34 +5,14 @@
 //! their number, and only the entries that they appended to `X-Forwarded-For` are read.
 
 use crate::app::App;
-use crate::tls::TlsListener;
-use axum::extract::connect_info::{ConnectInfo, Connected};
-use axum::extract::{FromRef, FromRequestParts};
+use axum::extract::{ConnectInfo, FromRef, FromRequestParts};
 use axum::http::header::USER_AGENT;
 use axum::http::request::Parts;
-use axum::serve::IncomingStream;
 use std::convert::Infallible;
 use std::net::{IpAddr, SocketAddr};
-use tokio::net::TcpListener;
 
 /// Longest stored name of a client program, in characters.
 const MAX_PROGRAM: usize = 200;
-
-/// Remote address of a connection.
-#[derive(Clone, Copy, Debug)]
-pub struct Peer(SocketAddr);
-
-impl Connected<IncomingStream<'_, TcpListener>> for Peer {
-    fn connect_info(stream: IncomingStream<'_, TcpListener>) -> Peer {
-        Peer(*stream.remote_addr())
-    }
-}
-
-impl Connected<IncomingStream<'_, TlsListener>> for Peer {
-    fn connect_info(stream: IncomingStream<'_, TlsListener>) -> Peer {
-        Peer(*stream.remote_addr())
-    }
-}
 
 /// Origin of a request.
 #[derive(Clone, Debug, Default)]
@@ -66,8 +46,8 @@ impl Origin {
 impl Origin {
     /// Reads the origin of a request behind the configured number of proxies.
     pub fn of_request(parts: &Parts, app: &App) -> Origin {
-        let peer = parts.extensions.get::<ConnectInfo<Peer>>();
-        let peer = peer.map(|ConnectInfo(Peer(peer))| peer.ip());
+        let peer = parts.extensions.get::<ConnectInfo<SocketAddr>>();
+        let peer = peer.map(|ConnectInfo(peer)| peer.ip());
         let forwarded = parts.headers.get_all("x-forwarded-for");
         let forwarded: Vec<&str> = forwarded.iter().filter_map(|v| v.to_str().ok()).collect();
         let named = parts.headers.get(USER_AGENT).and_then(|v| v.to_str().ok());

@@ -4,24 +4,21 @@ use crate::state::ServerState;
 use crate::subscriptions::subscribers;
 use crate::{health, routes, worker};
 use anyhow::{Context, Result};
-use axum::extract::connect_info::Connected;
-use axum::serve::{IncomingStream, Listener};
 use binnacle_fleet::{alerts, analysis_queue};
+use binnacle_listener::{Limits, plain, raise_open_file_limit, serve as serve_connections};
 use binnacle_orders::dispatch;
 use binnacle_planning::{notifications, reports, schedule};
 use binnacle_platform::app::App;
-use binnacle_platform::client_address::Peer;
 use binnacle_platform::clock::Clock;
 use binnacle_platform::config::{Database, Serve};
 use binnacle_platform::db::Db;
 use binnacle_platform::event_stream::EventListener;
 use binnacle_platform::mail::Mailer;
-use binnacle_platform::tls::TlsListener;
+use binnacle_platform::tls::TlsAcceptor;
 use binnacle_platform::{audit, outbox, webhooks};
 use sd_notify::NotifyState;
 use std::future::Future;
 use std::io::Write;
-use std::net::SocketAddr;
 use std::process::ExitCode;
 use std::time::Duration;
 use tokio::net::TcpListener;
@@ -30,7 +27,7 @@ use tokio::task::JoinSet;
 use tracing::{error, info, warn};
 use tracing_subscriber::EnvFilter;
 
-/// Time for requests in progress to finish when the server stops.
+/// Time for an analysis in progress to finish when the server stops.
 const GRACE: Duration = Duration::from_secs(20);
 
 /// Number of webhooks sent concurrently, so that a slow receiver delays only its own.
@@ -51,28 +48,20 @@ pub fn serve(config: Serve) -> Result<ExitCode> {
             .await
             .with_context(|| format!("cannot listen on {}", config.listen))?;
         let certificate = config.certificate(binnacle_wire::downlink::ONCE);
+        let tls = certificate.map(TlsAcceptor::new).transpose()?;
+        announce(if tls.is_some() { "https" } else { "http" }, &listener)?;
         let app = App::new(db, Clock::System, config, health::install_metrics()?);
-        if let Some(certificate) = certificate {
-            let listener = TlsListener::new(listener, certificate)?;
-            announce("https", &listener)?;
-            run(app, listener).await?;
-        } else {
-            announce("http", &listener)?;
-            run(app, listener).await?;
-        }
+        run(app, listener, tls).await?;
         Ok(ExitCode::SUCCESS)
     })
 }
 
-/// Serves an application on a listener until a signal or its own `stopping` stops it.
+/// Serves an application on a listener, with TLS or without, until a signal or its own `stopping`
+/// stops it.
 ///
 /// # Errors
-/// Fails when the listener fails.
-pub async fn run<L>(app: App, listener: L) -> Result<()>
-where
-    L: Listener<Addr = SocketAddr>,
-    Peer: for<'a> Connected<IncomingStream<'a, L>>,
-{
+/// Fails when the mail settings cannot be used, or the database fails.
+pub async fn run(app: App, listener: TcpListener, tls: Option<TlsAcceptor>) -> Result<()> {
     let state = ServerState::new(app.clone());
     let mailer = Mailer::new(&app.config.mail, alerts::TOPIC_LIST)?;
     let mailer = mailer.map(|mailer| mailer.with_list(reports::MAILING_LIST));
@@ -112,21 +101,19 @@ where
         }
     }
     parts.spawn(stop_on_signal(app.clone()));
-    let stopping = app.stopping.clone();
-    let service = routes::router(state).into_make_service_with_connect_info::<Peer>();
-    let serving =
-        axum::serve(listener, service).with_graceful_shutdown(stopping.clone().cancelled_owned());
     notify_service_manager(NotifyState::Ready);
-    let deadline = async {
-        stopping.cancelled().await;
-        notify_service_manager(NotifyState::Stopping);
-        tokio::time::sleep(GRACE).await;
+    let limits = limits_of_connections(&app);
+    let (router, stopping) = (routes::router(state), app.stopping.clone());
+    let cut_off = match tls {
+        Some(tls) => {
+            let handshake = |stream| tls.accept(stream);
+            serve_connections(listener, limits, handshake, router, stopping).await
+        }
+        None => serve_connections(listener, limits, plain, router, stopping).await,
     };
-    tokio::select! {
-        served = serving => served?,
-        () = deadline => warn!("running requests were cut off"),
+    if cut_off > 0 {
+        warn!(connections = cut_off, "running requests were cut off");
     }
-    app.stopping.cancel();
     let finished = async { while parts.join_next().await.is_some() {} };
     if tokio::time::timeout(GRACE, finished).await.is_err() {
         warn!("a running analysis was cut off; its lease will expire");
@@ -134,6 +121,27 @@ where
     app.db.close().await;
     info!("stopped");
     Ok(())
+}
+
+/// Returns the limits on connections, after raising the limit of open files.
+fn limits_of_connections(app: &App) -> Limits {
+    let limits = app.config.limits();
+    let limits = match raise_open_file_limit() {
+        Ok(open_files) => {
+            info!(open_files, "the limit of open files is raised");
+            limits.within_open_files(open_files)
+        }
+        Err(error) => {
+            warn!(%error, "the limit of open files cannot be raised");
+            limits
+        }
+    };
+    info!(
+        connections = limits.connections,
+        per_address = limits.connections_per_network,
+        "accepting connections"
+    );
+    limits
 }
 
 async fn stop_on_signal(app: App) {
@@ -144,6 +152,7 @@ async fn stop_on_signal(app: App) {
         _ = terminate.recv() => {}
         _ = tokio::signal::ctrl_c() => {}
     }
+    notify_service_manager(NotifyState::Stopping);
     app.stopping.cancel();
 }
 
@@ -155,7 +164,7 @@ fn notify_service_manager(state: NotifyState<'_>) {
 }
 
 /// Prints the address for whoever started the server.
-fn announce(scheme: &str, listener: &impl Listener<Addr = SocketAddr>) -> Result<()> {
+fn announce(scheme: &str, listener: &TcpListener) -> Result<()> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "listening on {scheme}://{}", listener.local_addr()?)?;
     out.flush()?;

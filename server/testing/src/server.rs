@@ -73,7 +73,7 @@ impl TestServer {
         let app = App::new(db, clock, config, metrics());
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let url = format!("http://{}", listener.local_addr().unwrap());
-        let serving = tokio::spawn(command::run(app.clone(), listener));
+        let serving = tokio::spawn(command::run(app.clone(), listener, None));
         TestServer {
             app,
             url,

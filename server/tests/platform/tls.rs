@@ -2,16 +2,25 @@
 
 use axum::Router;
 use axum::routing::get;
-use binnacle_platform::tls::{Certificate, TlsListener};
+use binnacle_listener::{Limits, serve as serve_connections};
+use binnacle_platform::tls::{Certificate, TlsAcceptor};
 use binnacle_wire::downlink::ONCE;
 use rcgen::{CertifiedKey, generate_simple_self_signed};
+use rustls::pki_types::pem::PemObject;
+use rustls::pki_types::{CertificateDer, ServerName};
+use rustls::{ClientConfig, RootCertStore};
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
 use tempfile::TempDir;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::task::AbortHandle;
 use tokio::time::timeout;
+use tokio_rustls::TlsConnector;
+use tokio_rustls::client::TlsStream;
+use tokio_util::sync::CancellationToken;
 
 const PATIENCE: Duration = Duration::from_mins(1);
 
@@ -26,6 +35,18 @@ struct TlsServer {
 impl Drop for TlsServer {
     fn drop(&mut self) {
         self.serving.abort();
+    }
+}
+
+fn limits() -> Limits {
+    Limits {
+        connections: 64,
+        connections_per_network: None,
+        handshake: PATIENCE,
+        head: PATIENCE,
+        idle: PATIENCE,
+        stall: PATIENCE,
+        drain: PATIENCE,
     }
 }
 
@@ -48,12 +69,22 @@ fn renew_certificate(folder: &Path) -> String {
 }
 
 async fn serve(folder: TempDir) -> TlsServer {
+    serve_within(limits(), folder).await
+}
+
+async fn serve_within(limits: Limits, folder: TempDir) -> TlsServer {
     let _ = rustls::crypto::ring::default_provider().install_default();
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
-    let listener = TlsListener::new(listener, certificate(folder.path())).unwrap();
+    let tls = TlsAcceptor::new(certificate(folder.path())).unwrap();
     let router = Router::new().route("/", get(async || "ashore"));
-    let serving = tokio::spawn(async move { axum::serve(listener, router).await });
+    let serving = tokio::spawn(serve_connections(
+        listener,
+        limits,
+        |stream| tls.accept(stream),
+        router,
+        CancellationToken::new(),
+    ));
     TlsServer {
         folder,
         url: format!("https://localhost:{port}/"),
@@ -67,6 +98,18 @@ async fn ask(url: &str, authority: &str) -> reqwest::Result<String> {
     let authority = reqwest::Certificate::from_pem(authority.as_bytes())?;
     let client = reqwest::Client::builder().tls_certs_only([authority]);
     client.build()?.get(url).send().await?.text().await
+}
+
+/// Opens a TLS connection, without a word of HTTP.
+async fn connect(server: &TlsServer, authority: &str) -> TlsStream<TcpStream> {
+    let mut roots = RootCertStore::empty();
+    let authority = CertificateDer::from_pem_slice(authority.as_bytes()).unwrap();
+    roots.add(authority).unwrap();
+    let config = ClientConfig::builder().with_root_certificates(roots);
+    let tls = TlsConnector::from(Arc::new(config.with_no_client_auth()));
+    let stream = TcpStream::connect(("127.0.0.1", server.port)).await;
+    let name = ServerName::try_from("localhost").unwrap();
+    tls.connect(name, stream.unwrap()).await.unwrap()
 }
 
 #[tokio::test]
@@ -90,6 +133,31 @@ async fn an_endless_handshake_does_not_delay_others() {
     let _silent = TcpStream::connect(address).await.unwrap();
     let result = timeout(PATIENCE, ask(&served.url, &authority)).await;
     assert_eq!(result.unwrap().unwrap(), "ashore");
+}
+
+#[tokio::test]
+async fn silence_in_place_of_a_handshake_and_half_a_head_after_it_are_given_up() {
+    let folder = tempfile::tempdir().unwrap();
+    let authority = renew_certificate(folder.path());
+    let short = Duration::from_millis(500);
+    let limits = Limits {
+        handshake: short,
+        head: short,
+        ..limits()
+    };
+    let served = serve_within(limits, folder).await;
+    let mut silent = TcpStream::connect(("127.0.0.1", served.port))
+        .await
+        .unwrap();
+    let mut half = connect(&served, &authority).await;
+    half.write_all(b"GET / HTTP/1.1\r\nHo").await.unwrap();
+    let mut received = Vec::new();
+    let closed = timeout(PATIENCE, silent.read_to_end(&mut received)).await;
+    drop(closed.unwrap());
+    let closed = timeout(PATIENCE, half.read_to_end(&mut received)).await;
+    drop(closed.unwrap());
+    assert!(!received.starts_with(b"HTTP/1.1 200"), "{received:?}");
+    assert_eq!(ask(&served.url, &authority).await.unwrap(), "ashore");
 }
 
 #[tokio::test]

@@ -2,10 +2,12 @@
 
 use crate::outbound::Reach;
 use crate::tls::Certificate;
+use binnacle_listener::Limits;
 use clap::Args;
 use sha2::{Digest, Sha256};
 use std::net::SocketAddr;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Database settings.
 #[derive(Clone, Debug, Args)]
@@ -73,6 +75,9 @@ pub struct Serve {
     #[arg(long, env = "BINNACLE_ANALYSIS_WORKERS", default_value_t = 1,
           value_parser = clap::value_parser!(u16).range(0..=64))]
     pub analysis_workers: u16,
+    /// Limits on connections.
+    #[command(flatten)]
+    pub connections: Connections,
     /// Webhook settings.
     #[command(flatten)]
     pub webhooks: Webhooks,
@@ -131,6 +136,21 @@ impl Serve {
         self.has_secure_cookies() || public.starts_with("https://")
     }
 
+    /// Returns the limits on connections. The proxies in front of the server limit their own
+    /// clients.
+    pub fn limits(&self) -> Limits {
+        let of_each = self.connections.max_connections_per_address as usize;
+        Limits {
+            connections: self.connections.max_connections as usize,
+            connections_per_network: (self.proxies == 0).then_some(of_each),
+            handshake: HANDSHAKE,
+            head: HEAD,
+            idle: IDLE,
+            stall: STALL,
+            drain: DRAIN,
+        }
+    }
+
     /// Returns the certificate's location, if https is served.
     pub fn certificate(&self, one_request: &'static [u8]) -> Option<Certificate> {
         let (chain, key) = (self.tls_cert.clone()?, self.tls_key.clone()?);
@@ -140,6 +160,29 @@ impl Serve {
             one_request,
         })
     }
+}
+
+/// Time limits of connections. A handshake over a satellite link that loses packets takes up to
+/// half a minute, and a telephone on it carries some 300 bytes a second.
+const HANDSHAKE: Duration = Duration::from_secs(30);
+const HEAD: Duration = Duration::from_secs(13);
+const IDLE: Duration = Duration::from_secs(75);
+const STALL: Duration = Duration::from_mins(1);
+/// Time for requests in progress to finish when the server stops.
+const DRAIN: Duration = Duration::from_secs(20);
+
+/// Limits on connections.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Connections {
+    /// Maximum number of connections; fewer where the system allows fewer open files
+    #[arg(long, env = "BINNACLE_MAX_CONNECTIONS", default_value_t = 4096,
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub max_connections: u32,
+    /// Maximum number of connections from one IPv4 address or IPv6 /56; not applied behind
+    /// --proxies
+    #[arg(long, env = "BINNACLE_MAX_CONNECTIONS_PER_ADDRESS", default_value_t = 256,
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub max_connections_per_address: u32,
 }
 
 /// Webhook settings.

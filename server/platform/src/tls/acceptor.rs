@@ -1,45 +1,36 @@
-//! TLS listener: it accepts connections whose handshake is done.
+//! TLS handshakes of the server.
 
 use super::certificate::{Certificate, Configs};
 use super::connection::{Tcp, TlsConnection};
 use anyhow::Result;
-use axum::serve::Listener;
+use binnacle_listener::Stream;
 use rustls::server::Acceptor;
 use std::io;
-use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::net::{TcpListener, TcpStream};
 use tokio::signal::unix::{SignalKind, signal};
-use tokio::sync::{Semaphore, mpsc, watch};
-use tokio::task::AbortHandle;
+use tokio::sync::watch;
 use tokio::time::timeout;
 use tokio_rustls::LazyConfigAcceptor;
-use tracing::{debug, error, info};
+use tokio_util::task::AbortOnDropHandle;
+use tracing::{error, info};
 
-/// Time limit of a handshake: over a satellite link that loses packets it takes up to half a
-/// minute.
-const HANDSHAKE: Duration = Duration::from_mins(1);
-/// Maximum number of concurrent handshakes; further connections wait in the system's queue.
-const HANDSHAKES: usize = 1024;
+/// Time limit of the client's hello, its first message.
+const HELLO: Duration = Duration::from_secs(15);
 
-type Connection = (TlsConnection, SocketAddr);
-
-/// Listener for TLS connections on a TCP listener. SIGHUP reloads the certificate.
-#[derive(Debug)]
-pub struct TlsListener {
-    ready: mpsc::Receiver<Connection>,
-    address: SocketAddr,
-    tasks: [AbortHandle; 2],
+/// Acceptor of TLS connections. SIGHUP reloads the certificate.
+#[derive(Clone, Debug)]
+pub struct TlsAcceptor {
+    in_use: watch::Receiver<Configs>,
+    _reload: Arc<AbortOnDropHandle<()>>,
 }
 
-impl TlsListener {
-    /// Begins to accept connections.
+impl TlsAcceptor {
+    /// Reads the certificate, and begins to watch for SIGHUP.
     ///
     /// # Errors
     /// Fails when the certificate cannot be used, or signals cannot be received.
-    pub fn new(listener: TcpListener, certificate: Certificate) -> Result<TlsListener> {
-        let address = listener.local_addr()?;
+    pub fn new(certificate: Certificate) -> Result<TlsAcceptor> {
         let (config, in_use) = watch::channel(certificate.load()?);
         let mut hang_up = signal(SignalKind::hangup())?;
         let reload = tokio::spawn(async move {
@@ -56,64 +47,20 @@ impl TlsListener {
                 }
             }
         });
-        let (done, ready) = mpsc::channel(HANDSHAKES);
-        let accept = tokio::spawn(accept(listener, in_use, done));
-        Ok(TlsListener {
-            ready,
-            address,
-            tasks: [reload.abort_handle(), accept.abort_handle()],
+        Ok(TlsAcceptor {
+            in_use,
+            _reload: Arc::new(AbortOnDropHandle::new(reload)),
         })
     }
-}
 
-impl Drop for TlsListener {
-    fn drop(&mut self) {
-        for task in &self.tasks {
-            task.abort();
-        }
+    /// Performs the handshake of a connection.
+    ///
+    /// # Errors
+    /// Fails when the client does not speak TLS, breaks off, or says nothing.
+    pub async fn accept(self, stream: Stream) -> io::Result<TlsConnection> {
+        let hello = LazyConfigAcceptor::new(Acceptor::default(), Tcp::new(stream));
+        let hello = timeout(HELLO, hello).await??;
+        let config = self.in_use.borrow().for_hello(&hello.client_hello());
+        Ok(TlsConnection::new(hello.into_stream(config).await?))
     }
-}
-
-impl Listener for TlsListener {
-    type Io = TlsConnection;
-    type Addr = SocketAddr;
-
-    async fn accept(&mut self) -> Connection {
-        match self.ready.recv().await {
-            Some(connection) => connection,
-            // Nothing accepts connections any more: the runtime is stopping.
-            None => std::future::pending().await,
-        }
-    }
-
-    fn local_addr(&self) -> io::Result<SocketAddr> {
-        Ok(self.address)
-    }
-}
-
-async fn accept(
-    mut listener: TcpListener,
-    in_use: watch::Receiver<Configs>,
-    done: mpsc::Sender<Connection>,
-) {
-    let free = Arc::new(Semaphore::new(HANDSHAKES));
-    while let Ok(permit) = free.clone().acquire_owned().await {
-        let (stream, peer) = Listener::accept(&mut listener).await;
-        let configs = in_use.borrow().clone();
-        let done = done.clone();
-        tokio::spawn(async move {
-            match timeout(HANDSHAKE, handshake(stream, configs)).await {
-                Ok(Ok(connection)) => drop(done.send((connection, peer)).await),
-                Ok(Err(error)) => debug!(%peer, %error, "the TLS handshake failed"),
-                Err(_) => debug!(%peer, "the TLS handshake took too long"),
-            }
-            drop(permit);
-        });
-    }
-}
-
-async fn handshake(stream: TcpStream, configs: Configs) -> io::Result<TlsConnection> {
-    let hello = LazyConfigAcceptor::new(Acceptor::default(), Tcp::new(stream)).await?;
-    let config = configs.for_hello(&hello.client_hello());
-    Ok(TlsConnection::new(hello.into_stream(config).await?))
 }

@@ -4,13 +4,13 @@
 //! Invariants: data that a peer waits for is never held back. A peer that is still connected
 //! receives everything that was written.
 
+use binnacle_listener::Stream;
 use socket2::SockRef;
 use std::io::{self, IoSlice};
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
-use tokio::net::TcpStream;
 use tokio_rustls::server::TlsStream;
 
 /// First byte of an encrypted TLS record (RFC 8446, section 5.1).
@@ -20,7 +20,7 @@ const ENCRYPTED: u8 = 23;
 /// first response instead of in a packet of its own.
 #[derive(Debug)]
 pub(super) struct Tcp {
-    stream: TcpStream,
+    stream: Stream,
     /// Data held back for the next write.
     held_back: Vec<u8>,
     handshake_done: bool,
@@ -30,7 +30,7 @@ pub(super) struct Tcp {
 
 impl Tcp {
     /// Wraps a connection that was just accepted.
-    pub(super) fn new(stream: TcpStream) -> Tcp {
+    pub(super) fn new(stream: Stream) -> Tcp {
         let tcp = Tcp {
             stream,
             held_back: Vec::new(),

@@ -1,13 +1,12 @@
 //! TLS on the server's own listener, for a server without a proxy in front of it.
 //!
-//! Invariants: a slow handshake delays no other connection. A certificate that cannot be
-//! read is refused at the start; on a reload it leaves the previous one in use.
+//! Invariants: a certificate that cannot be read is refused at the start; on a reload it leaves
+//! the previous one in use.
 
+mod acceptor;
 mod certificate;
 mod connection;
 
-mod listener;
-
+pub use acceptor::TlsAcceptor;
 pub use certificate::Certificate;
 pub use connection::TlsConnection;
-pub use listener::TlsListener;
