@@ -1,17 +1,15 @@
-//! The commands `status` and `hold`, with or without a running agent.
+//! The commands `status`, `hold`, `actions` and `page-pin`, with or without a running agent.
 
 use super::bad_input::BadInput;
-use crate::config::Config;
-use crate::page::{ExclusionRequest, GUARD_HEADER};
+use crate::clock;
+use crate::config::{Config, Pin};
 use crate::sampler::Exclusion;
-use crate::spool::Spool;
-use crate::status::{Status, offline_status};
+use crate::spool::{Spool, is_agent_running};
+use crate::status::{Status, offline_status, status_socket};
 use std::io::Write;
-use std::net::SocketAddr;
-use std::time::Duration;
 
-/// Timeout of requests to the running agent.
-const LOCAL_TIMEOUT: Duration = Duration::from_secs(5);
+/// Address of actions on the agent's own computer.
+const COMMAND_LINE: &str = "command line";
 
 pub(super) async fn status(config: &Config, json: bool) -> anyhow::Result<()> {
     if let Ok(false) = config.data_dir.try_exists() {
@@ -25,9 +23,15 @@ pub(super) async fn status(config: &Config, json: bool) -> anyhow::Result<()> {
             .await
             .map_err(|_| error)?,
     };
-    let status = match fetch_running_status(&spool).await {
-        Some(status) => status,
-        None => offline_status(&spool).await?,
+    let status = match status_socket::fetch(&config.data_dir).await {
+        Ok(status) => status,
+        Err(error) => {
+            tracing::debug!(error = format!("{error:#}"), "no agent responds");
+            Status {
+                running: is_agent_running(&config.data_dir),
+                ..offline_status(&spool).await?
+            }
+        }
     };
     let text = if json {
         serde_json::to_string_pretty(&status)? + "\n"
@@ -38,31 +42,17 @@ pub(super) async fn status(config: &Config, json: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Fetches the status of the running agent, `None` when there is no response.
-async fn fetch_running_status(spool: &Spool) -> Option<Status> {
-    let url = format!("http://{}/api/status", find_page(spool).await?);
-    let response = local_client().ok()?.get(url).send().await.ok()?;
-    response.json().await.ok()
-}
-
+/// Stores an exclusion. A running agent reads it within a second.
 pub(super) async fn set_exclusion(
     config: &Config,
     exclusion: Option<Exclusion>,
 ) -> anyhow::Result<()> {
     let spool = Spool::open(&config.data_dir).await?;
-    // A running agent reads the spool every second, but its page takes effect at once.
     spool.set_exclusion(exclusion).await?;
-    if let Some(page) = find_page(&spool).await {
-        let response = local_client()?
-            .post(format!("http://{page}/api/hold"))
-            .header(GUARD_HEADER, "1")
-            .json(&ExclusionRequest { exclusion })
-            .send()
-            .await;
-        if let Err(error) = response {
-            tracing::debug!(%error, "no running agent responds");
-        }
-    }
+    let action = Exclusion::action(exclusion);
+    spool
+        .record_action(clock::now(), COMMAND_LINE, &action, "done")
+        .await?;
     let said = exclusion.map_or_else(
         || "sampling resumes".to_owned(),
         |h| format!("on hold: {h}"),
@@ -71,21 +61,22 @@ pub(super) async fn set_exclusion(
     Ok(())
 }
 
-async fn find_page(spool: &Spool) -> Option<SocketAddr> {
-    let mut address = spool.page_address().await.ok()??;
-    if address.ip().is_unspecified() {
-        // Listening on all addresses: connect to this computer.
-        address.set_ip(match address {
-            SocketAddr::V4(_) => std::net::Ipv4Addr::LOCALHOST.into(),
-            SocketAddr::V6(_) => std::net::Ipv6Addr::LOCALHOST.into(),
-        });
+/// Lists what people altered on board, the latest last.
+pub(super) async fn actions(config: &Config, last: u32) -> anyhow::Result<()> {
+    let spool = Spool::open(&config.data_dir).await?;
+    let mut out = std::io::stdout().lock();
+    for action in spool.actions(last).await?.iter().rev() {
+        let (at, address) = (action.at, &action.address);
+        writeln!(out, "{at}  {address}  {}: {}", action.action, action.result)?;
     }
-    Some(address)
+    Ok(())
 }
 
-fn local_client() -> reqwest::Result<reqwest::Client> {
-    reqwest::Client::builder()
-        .no_proxy()
-        .timeout(LOCAL_TIMEOUT)
-        .build()
+/// Prints the line of the configuration that sets a PIN, which is read from standard input.
+pub(super) fn page_pin() -> anyhow::Result<()> {
+    let mut typed = String::new();
+    std::io::stdin().read_line(&mut typed)?;
+    let pin = Pin::hash(typed.trim()).map_err(BadInput)?;
+    writeln!(std::io::stdout(), "pin = \"{pin}\"")?;
+    Ok(())
 }

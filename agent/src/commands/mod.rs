@@ -1,4 +1,5 @@
-//! Commands: `run`, `status`, `discover`, `enrol`, `rotate-token`, `hold`, `export`, `replay`.
+//! Commands: `run`, `status`, `discover`, `enrol`, `rotate-token`, `hold`, `actions`, `page-pin`,
+//! `export`, `replay`.
 //!
 //! Exit code 2 and one line for a mistake in the user's input, 1 for every other failure.
 
@@ -19,7 +20,7 @@ use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use configuration::load;
 use discover::discover;
 use enrolment::{enrol, rotate_token};
-use local_agent::{set_exclusion, status};
+use local_agent::{actions, page_pin, set_exclusion, status};
 use recordings::{Options, export, parse_time, replay};
 use signals::stop_on_signals;
 use std::io::Write;
@@ -99,6 +100,18 @@ enum Command {
         /// Reason, or `off`.
         hold: HoldArgument,
     },
+    /// Lists what people altered on board: time, address, action and result.
+    Actions {
+        /// Configuration file.
+        #[arg(long, default_value = "agent.toml")]
+        config: PathBuf,
+        /// Number of actions, counted from the latest.
+        #[arg(long, default_value_t = 100)]
+        last: u32,
+    },
+    /// Reads a PIN of 6 to 12 digits from standard input, and prints the line for `[page]` in the
+    /// configuration that makes changes on the page need it.
+    PagePin,
     /// Writes the readings of each second in the raw log as CSV: for download in port, also while
     /// the agent runs.
     Export {
@@ -217,6 +230,8 @@ fn execute(command: Command) -> anyhow::Result<()> {
             Command::Hold { config, hold } => {
                 set_exclusion(&load(&config)?, hold.exclusion()).await
             }
+            Command::Actions { config, last } => actions(&load(&config)?, last).await,
+            Command::PagePin => page_pin(),
             Command::Export {
                 config,
                 from,

@@ -6,6 +6,7 @@
 mod alert;
 mod error;
 mod limits;
+mod pin;
 mod profile;
 mod roles;
 mod silence;
@@ -15,6 +16,7 @@ pub(crate) use alert::AlertConfig;
 #[cfg(test)]
 pub(crate) use alert::GyroError;
 pub(crate) use error::ConfigError;
+pub(crate) use pin::Pin;
 #[cfg(test)]
 pub(crate) use profile::max_burst_batch_bytes;
 pub(crate) use profile::{ConnectionPolicy, Profile, UploadPlan};
@@ -76,6 +78,8 @@ pub(crate) struct Config {
 pub(crate) struct PageConfig {
     /// Address and port; port 0 takes a free one.
     pub(crate) listen: SocketAddr,
+    /// PIN that changes need; without one they are accepted on the agent's own computer alone.
+    pub(crate) pin: Option<Pin>,
 }
 
 impl Config {

@@ -3,13 +3,13 @@
 //! Invariant: an azimuth that the page confirmed is in the spool. The page creates its id, so that
 //! an azimuth sent twice by accident is one azimuth.
 
-use super::reports::{Refusal, refuse_invalid, refuse_unsaved, ship_now};
-use super::request_guard::require_guard_header;
+use super::author::Author;
+use super::reports::{refuse_invalid, refuse_unsaved, words};
+use super::request_guard::Refusal;
 use super::state::PageState;
 use crate::spool::{SaveReportError, SpooledAzimuth};
 use axum::Json;
 use axum::extract::{Path, State};
-use axum::http::HeaderMap;
 use binnacle_compass::azimuth::AzimuthResult;
 use binnacle_wire::messages::BoardAzimuth;
 use serde::Serialize;
@@ -37,20 +37,40 @@ pub(super) async fn list_azimuths(
 pub(super) async fn put_azimuth(
     State(page): State<PageState>,
     Path(id): Path<Uuid>,
-    headers: HeaderMap,
+    author: Author,
     Json(written): Json<BoardAzimuth>,
 ) -> Result<Json<ShownAzimuth>, Refusal> {
-    require_guard_header(&headers).map_err(|(status, why)| (status, why.to_owned()))?;
-    let now = ship_now(&page);
+    let action = action(&written);
+    let stored = store(&page, id, written).await;
+    let stored = author.record(&page, &action, stored).await?;
+    page.upload_wakeup.notify_one();
+    Ok(Json(ShownAzimuth::new(stored)))
+}
+
+async fn store(
+    page: &PageState,
+    id: Uuid,
+    written: BoardAzimuth,
+) -> Result<SpooledAzimuth, Refusal> {
+    let now = page.now();
     let report = written.report.checked(now);
     let sent = BoardAzimuth {
         report: report.map_err(|error| refuse_invalid(&error))?,
         ..written
     };
     let stored = page.spool.save_azimuth(id, sent, now).await;
-    let stored = stored.map_err(|error| refuse_unsaved(&error))?;
-    page.upload_wakeup.notify_one();
-    Ok(Json(ShownAzimuth::new(stored)))
+    stored.map_err(|error| refuse_unsaved(&error))
+}
+
+/// Describes an azimuth for the record of actions.
+fn action(written: &BoardAzimuth) -> String {
+    let what = if written.withdrawn {
+        "withdrawal of an azimuth"
+    } else {
+        "azimuth"
+    };
+    let observation = &written.report.observation;
+    format!("{what}: {}, {}", words(&observation.kind), observation.time)
 }
 
 impl ShownAzimuth {

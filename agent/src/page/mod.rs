@@ -1,20 +1,25 @@
 //! The local page: one HTML file, the status as JSON, the hold buttons, and the forms of logbook and
 //! azimuths.
 //!
-//! For the vessel's own network, without a login. A foreign web site that an officer has open must
-//! not be able to press a button. Every change therefore needs a header that no form can send, and
-//! requests under names that resolve elsewhere are refused.
+//! For the vessel's own network. Everybody there may read it. What changes the heading or the log
+//! needs the PIN, or where none is set, comes from the agent's own computer; it is recorded. A
+//! foreign web site that an officer has open must not be able to press a button: every change needs
+//! a header that no form can send, and requests under names that resolve elsewhere are refused.
 
 mod acknowledgements;
+mod actions;
 mod azimuths;
 mod exclusions;
-mod http_limits;
 mod reports;
-mod request_guard;
+
+mod author;
 mod state;
 
-pub(crate) use exclusions::ExclusionRequest;
-pub(crate) use request_guard::GUARD_HEADER;
+mod pin_guard;
+mod request_guard;
+mod throttle;
+
+pub(crate) use pin_guard::PinGuard;
 pub(crate) use state::PageState;
 
 use crate::config::PageConfig;
@@ -27,41 +32,51 @@ use axum::middleware;
 use axum::response::{Html, IntoResponse};
 use axum::routing::{get, post, put};
 use axum::{Json, Router};
+use binnacle_listener::Limits;
 use exclusions::set_exclusion;
-use http_limits::LimitedListener;
 use request_guard::reject_foreign_sites;
 use std::net::SocketAddr;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 
 /// Size limit of a request: a report's note has at most 1000 characters.
 const MAX_REQUEST_BYTES: usize = 16 * 1024;
 
-/// Serves the page until `shutdown`, if it is configured, and stores its address in the spool.
+/// Limits on connections: many more than a bridge has screens. The page sends a request every
+/// second. It must not use up what the uplink and the instruments need.
+const LIMITS: Limits = Limits {
+    connections: 96,
+    connections_per_network: Some(24),
+    handshake: Duration::from_secs(10),
+    head: Duration::from_secs(10),
+    idle: Duration::from_secs(15),
+    stall: Duration::from_secs(15),
+    drain: Duration::from_secs(2),
+};
+
+/// Serves the page until `shutdown`, if it is configured. Returns its address.
 pub(crate) async fn serve(
     config: Option<&PageConfig>,
     page: PageState,
     shutdown: &CancellationToken,
 ) -> anyhow::Result<Option<SocketAddr>> {
     let Some(config) = config else {
-        page.spool.set_page_address(None).await?;
         return Ok(None);
     };
     let listener = TcpListener::bind(config.listen)
         .await
         .with_context(|| format!("page.listen {}: cannot listen", config.listen))?;
     let address = listener.local_addr()?;
-    page.spool.set_page_address(Some(address)).await?;
-    let stopped = shutdown.clone().cancelled_owned();
-    tokio::spawn(async move {
-        let served = axum::serve(LimitedListener::new(listener), router(page))
-            .with_graceful_shutdown(stopped)
-            .await;
-        if let Err(error) = served {
-            tracing::error!(%error, "the local page stopped");
-        }
-    });
+    let stopping = shutdown.clone();
+    tokio::spawn(binnacle_listener::serve(
+        listener,
+        LIMITS,
+        binnacle_listener::plain,
+        router(page),
+        stopping,
+    ));
     Ok(Some(address))
 }
 
@@ -72,6 +87,8 @@ pub(crate) fn router(page: PageState) -> Router {
         .route("/api/status", get(status))
         .route("/api/hold", post(set_exclusion))
         .route("/api/alert/acknowledge", post(acknowledge))
+        .route("/api/access", get(actions::show_access))
+        .route("/api/actions", get(actions::list_actions))
         .route("/azimuths.js", get(azimuth_script))
         .route("/api/azimuths", get(azimuths::list_azimuths))
         .route("/api/azimuths/{id}", put(azimuths::put_azimuth))
@@ -106,29 +123,45 @@ async fn status(State(page): State<PageState>) -> Json<Arc<Status>> {
 pub(crate) mod tests {
     use super::*;
     use crate::alert::AlertRecord;
+    use crate::config::Pin;
     use crate::sampler::Exclusion;
     use crate::spool::Spool;
-    use axum::body::Body;
-    use axum::extract::Request;
+    use axum::body::{self, Body};
+    use axum::extract::{ConnectInfo, Request};
     use axum::http::StatusCode;
+    use axum::{Extension, response::Response};
     use binnacle_wire::alert::{ShipAlert, ShipAlertState};
     use tempfile::TempDir;
     use tokio::sync::{Notify, watch};
+    use tokio::time::Instant;
     use tower::ServiceExt;
     use uuid::Uuid;
 
+    /// Returns a page without a PIN, as it is reached from the agent's own computer.
     pub(crate) async fn page() -> (TempDir, PageState, Router) {
+        page_for(None, "127.0.0.1").await
+    }
+
+    /// Returns a page as it is reached from an address.
+    pub(crate) async fn page_for(pin: Option<&str>, peer: &str) -> (TempDir, PageState, Router) {
         let directory = TempDir::new().unwrap();
         let spool = Spool::open(directory.path()).await.unwrap();
+        let pin = pin.map(|pin| Pin::hash(pin).unwrap());
         let page = PageState {
             spool,
             status: watch::channel(Arc::new(Status::default())).1,
             exclusion: watch::Sender::new(None),
             acknowledged: watch::Sender::new(None),
             upload_wakeup: Arc::new(Notify::new()),
+            guard: Arc::new(PinGuard::new(pin, Instant::now())),
         };
-        let router = router(page.clone());
+        let router = reached_from(peer, &page);
         (directory, page, router)
+    }
+
+    fn reached_from(peer: &str, page: &PageState) -> Router {
+        let peer = SocketAddr::new(peer.parse().unwrap(), 50_000);
+        router(page.clone()).layer(Extension(ConnectInfo(peer)))
     }
 
     fn exclusion(headers: &[(&str, &str)]) -> Request {
@@ -173,6 +206,58 @@ pub(crate) mod tests {
             assert_eq!(response.status(), StatusCode::FORBIDDEN, "{headers:?}");
         }
         assert_eq!(*page.exclusion.borrow(), None);
+    }
+
+    async fn text(response: Response) -> String {
+        let bytes = body::to_bytes(response.into_body(), 1 << 16).await.unwrap();
+        String::from_utf8(bytes.to_vec()).unwrap()
+    }
+
+    async fn get_json(router: &Router, path: &str) -> serde_json::Value {
+        let request = Request::get(path).header("host", "192.168.1.9:8090");
+        let request = request.body(Body::empty()).unwrap();
+        let response = router.clone().oneshot(request).await.unwrap();
+        serde_json::from_str(&text(response).await).unwrap()
+    }
+
+    #[tokio::test]
+    async fn without_a_pin_the_network_may_look_and_alter_nothing() {
+        let (_directory, page, router) = page_for(None, "192.168.1.30").await;
+        let access = get_json(&router, "/api/access").await;
+        assert_eq!(access, serde_json::json!({"pin": false, "allowed": false}));
+        let own = [("x-binnacle-request", "1"), ("x-binnacle-pin", "271828")];
+        let response = router.clone().oneshot(exclusion(&own)).await.unwrap();
+        assert_eq!(response.status(), StatusCode::FORBIDDEN);
+        assert!(text(response).await.contains("own computer"));
+        assert_eq!(*page.exclusion.borrow(), None);
+        assert_eq!(
+            get_json(&router, "/api/actions").await,
+            serde_json::json!([])
+        );
+    }
+
+    #[tokio::test]
+    async fn with_a_pin_whoever_knows_it_may_alter_something_and_it_is_recorded() {
+        let (_directory, page, router) = page_for(Some("271828"), "192.168.1.30").await;
+        let send = async |pin: &str| {
+            let headers = [("x-binnacle-request", "1"), ("x-binnacle-pin", pin)];
+            let response = router.clone().oneshot(exclusion(&headers)).await.unwrap();
+            response.status()
+        };
+        let without = exclusion(&[("x-binnacle-request", "1")]);
+        let response = router.clone().oneshot(without).await.unwrap();
+        assert_eq!(response.status(), StatusCode::UNAUTHORIZED);
+        assert_eq!(send("314159").await, StatusCode::UNAUTHORIZED);
+        assert_eq!(*page.exclusion.borrow(), None);
+        assert_eq!(send("271828").await, StatusCode::OK);
+        assert_eq!(*page.exclusion.borrow(), Some(Exclusion::Berthed));
+        let actions = get_json(&router, "/api/actions").await;
+        let said = |number: usize| {
+            ["address", "action", "result"].map(|name| actions[number][name].as_str().unwrap())
+        };
+        assert_eq!(said(0), ["192.168.1.30", "hold: berthed", "done"]);
+        assert_eq!(said(1), ["192.168.1.30", "PIN", "wrong"]);
+        assert_eq!(actions.as_array().unwrap().len(), 2);
     }
 
     #[tokio::test]
@@ -265,7 +350,10 @@ pub(crate) mod tests {
             .header("x-binnacle-request", "1")
             .body(Body::from(format!(r#"{{"id":"{id}"}}"#)))
             .unwrap();
-        let response = router(page.clone()).oneshot(request).await.unwrap();
+        let response = reached_from("127.0.0.1", &page)
+            .oneshot(request)
+            .await
+            .unwrap();
         assert_eq!(response.status(), StatusCode::OK);
         assert_eq!(*page.acknowledged.borrow(), Some(id));
     }

@@ -3,16 +3,15 @@
 //! Invariant: a report that the page confirmed is in the spool. The page creates the report's id,
 //! so that a report sent twice by accident is one report.
 
-use super::request_guard::require_guard_header;
+use super::author::Author;
+use super::request_guard::Refusal;
 use super::state::PageState;
-use crate::clock;
 use crate::spool::{SaveReportError, StoredReport};
 use axum::Json;
 use axum::extract::{Path, State};
-use axum::http::{HeaderMap, StatusCode};
-use binnacle_compass::time::Timestamp;
+use axum::http::StatusCode;
 use binnacle_wire::logbook::{Report, ReportError, reporter};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
 /// Report as the form sends it.
@@ -25,9 +24,6 @@ pub(crate) struct ReportForm {
     #[serde(flatten)]
     report: Report,
 }
-
-/// Error response: a status, and the mistake in words.
-pub(crate) type Refusal = (StatusCode, String);
 
 /// Lists the latest reports.
 pub(super) async fn list_reports(
@@ -43,11 +39,18 @@ pub(super) async fn list_reports(
 pub(super) async fn put_report(
     State(page): State<PageState>,
     Path(id): Path<Uuid>,
-    headers: HeaderMap,
+    author: Author,
     Json(written): Json<ReportForm>,
 ) -> Result<Json<StoredReport>, Refusal> {
-    require_guard_header(&headers).map_err(|(status, why)| (status, why.to_owned()))?;
-    let now = ship_now(&page);
+    let action = written.action();
+    let stored = store(&page, id, written).await;
+    let stored = author.record(&page, &action, stored).await?;
+    page.upload_wakeup.notify_one();
+    Ok(Json(stored))
+}
+
+async fn store(page: &PageState, id: Uuid, written: ReportForm) -> Result<StoredReport, Refusal> {
+    let now = page.now();
     let reporter = reporter(&written.reporter).map_err(|error| refuse_invalid(&error))?;
     let mut report = written
         .report
@@ -58,19 +61,29 @@ pub(super) async fn put_report(
             .ending_within_a_year(now)
             .map_err(|error| refuse_invalid(&error))?;
     }
-    let stored = page
+    let saved = page
         .spool
-        .save_report(id, report, reporter, written.withdrawn, now)
-        .await
-        .map_err(|error| refuse_unsaved(&error))?;
-    page.upload_wakeup.notify_one();
-    Ok(Json(stored))
+        .save_report(id, report, reporter, written.withdrawn, now);
+    saved.await.map_err(|error| refuse_unsaved(&error))
 }
 
-/// Returns the time on board. Either clock may lag far behind; neither is ahead without reason.
-pub(super) fn ship_now(page: &PageState) -> Timestamp {
-    let ship_time = page.status.borrow().ship_time;
-    ship_time.map_or_else(clock::now, |time| time.max(clock::now()))
+impl ReportForm {
+    /// Describes the report for the record of actions.
+    fn action(&self) -> String {
+        let what = if self.withdrawn {
+            "withdrawal of a report"
+        } else {
+            "report"
+        };
+        let kind = words(&self.report.kind);
+        format!("{what}: {kind}, {}", self.report.from)
+    }
+}
+
+/// Returns the words of a kind.
+pub(super) fn words(kind: &impl Serialize) -> String {
+    let word = serde_json::to_value(kind).unwrap_or_default();
+    word.as_str().unwrap_or_default().replace('_', " ")
 }
 
 pub(super) fn refuse_invalid(error: &ReportError) -> Refusal {

@@ -8,15 +8,18 @@ use axum::response::{IntoResponse, Response};
 use std::net::IpAddr;
 
 /// Header that every change must carry; no page of another site can send it.
-pub(crate) const GUARD_HEADER: &str = "x-binnacle-request";
+const GUARD_HEADER: &str = "x-binnacle-request";
+
+/// Error response: a status, and the mistake in words.
+pub(super) type Refusal = (StatusCode, String);
 
 /// Fails when a change has no guard header.
-pub(crate) fn require_guard_header(headers: &HeaderMap) -> Result<(), (StatusCode, &'static str)> {
+pub(super) fn require_guard_header(headers: &HeaderMap) -> Result<(), Refusal> {
     if headers.get(GUARD_HEADER).is_some_and(|value| value == "1") {
         return Ok(());
     }
     let why = "the header X-Binnacle-Request: 1 is missing";
-    Err((StatusCode::FORBIDDEN, why))
+    Err((StatusCode::FORBIDDEN, why.to_owned()))
 }
 
 /// Refuses requests that another site made the browser send.

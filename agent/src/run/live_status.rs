@@ -15,6 +15,7 @@ impl Agent {
         let readings = &self.acquisition.readings;
         let mut status = offline_status(&self.spool).await.unwrap_or_default();
         status.running = true;
+        status.built_at = Some(now);
         status.ship_time = self.acquisition.time();
         status.heading = heading;
         status.card = card;

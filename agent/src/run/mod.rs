@@ -50,7 +50,6 @@ pub(crate) async fn run(config: Config, shutdown: CancellationToken) -> anyhow::
     let agent = Agent::start(config, spool.clone(), &shutdown).await?;
     ServiceManager::report_ready();
     agent.run(shutdown).await;
-    spool.set_page_address(None).await.ok();
     spool.close().await;
     Ok(())
 }
@@ -205,7 +204,7 @@ impl Agent {
             .send_replace(self.acquisition.time());
         match self.spool.exclusion().await {
             Ok(exclusion) => {
-                // The command line stores it there when it finds no page.
+                // The command line stores it there.
                 self.exclusion
                     .send_if_modified(|known| std::mem::replace(known, exclusion) != exclusion);
             }

@@ -5,12 +5,12 @@ use crate::acquisition::Acquisition;
 use crate::alert::{AlarmSentence, AlertMonitor, DifferenceMonitor};
 use crate::clock;
 use crate::config::Config;
-use crate::page::{self, PageState};
+use crate::page::{self, PageState, PinGuard};
 use crate::raw_log::RawLog;
 use crate::sampler::Tally;
 use crate::short_burst::{self, FileModem};
 use crate::spool::Spool;
-use crate::status::Status;
+use crate::status::{Status, status_socket};
 use crate::uplink;
 use anyhow::Context;
 use binnacle_input::{InputConfig, InputStats};
@@ -57,13 +57,16 @@ impl Agent {
         let status = watch::Sender::new(Arc::new(Status::default()));
         let acknowledged = watch::Sender::new(None);
         let acknowledged_rx = acknowledged.subscribe();
+        let pin = config.page.as_ref().and_then(|page| page.pin.clone());
         let served = PageState {
             spool: spool.clone(),
             status: status.subscribe(),
             exclusion: exclusion.clone(),
             acknowledged,
             upload_wakeup: uplink_handle.sealed.clone(),
+            guard: Arc::new(PinGuard::new(pin, Instant::now())),
         };
+        status_socket::serve(&config.data_dir, status.subscribe(), shutdown);
         let page = page::serve(config.page.as_ref(), served, shutdown).await?;
         let uplink = tokio::spawn(uplink.run(shutdown.clone()));
         if let Some(modem) = &config.modem {

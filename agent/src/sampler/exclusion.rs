@@ -28,6 +28,13 @@ impl Exclusion {
     }
 }
 
+impl Exclusion {
+    /// Describes the change to an exclusion, or to none, for the record of actions.
+    pub(crate) fn action(exclusion: Option<Exclusion>) -> String {
+        exclusion.map_or_else(|| "hold ended".to_owned(), |hold| format!("hold: {hold}"))
+    }
+}
+
 impl fmt::Display for Exclusion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

@@ -7,7 +7,6 @@ pub(super) const MODEL: &str = "model";
 pub(super) const WITHDRAWN: &str = "card_withdrawn";
 pub(super) const SETTINGS: &str = "settings";
 pub(super) const EXCLUSION: &str = "hold";
-pub(super) const PAGE: &str = "page";
 pub(super) const LAST_CONTACT: &str = "last_contact";
 pub(super) const ALERT: &str = "alert";
 pub(super) const THINNED: &str = "thinned";

@@ -25,6 +25,7 @@ mod identity;
 mod state;
 
 mod acknowledged;
+mod actions;
 mod batches;
 mod merge;
 mod reports;
@@ -37,9 +38,11 @@ mod enrolment;
 mod repair;
 
 pub(crate) use account::{BudgetAccount, REQUEST_BYTES};
+pub(crate) use actions::Action;
 pub(crate) use batches::SealedBatch;
 pub(crate) use database::Spool;
 pub(crate) use identity::Identity;
+pub(crate) use repair::is_agent_running;
 pub(crate) use reports::azimuths::SpooledAzimuth;
 pub(crate) use reports::{ReportState, SaveReportError, StoredReport};
 pub(crate) use seal::{Pending, Seal};

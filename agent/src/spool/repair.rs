@@ -1,6 +1,7 @@
 //! Repair of a damaged spool: it is quarantined, and its readable rows are carried over. A vessel
 //! must not have to wait in port for somebody to delete a file.
 
+use super::actions;
 use super::database::{Spool, connect, create_private};
 use super::reports::{self, azimuths};
 use super::seal::insert_batch;
@@ -43,6 +44,12 @@ impl Spool {
         carry_over(&aside, &spool).await;
         Ok((spool, lock))
     }
+}
+
+/// Returns whether an agent runs on the spool of a directory.
+pub(crate) fn is_agent_running(directory: &Path) -> bool {
+    let file = File::open(directory.join("agent.lock"));
+    file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
 fn lock(directory: &Path) -> anyhow::Result<Lock> {
@@ -163,6 +170,7 @@ async fn carry_over(aside: &Path, spool: &Spool) {
     }
     let reports = carry_reports_over(&damaged, spool).await;
     let azimuths = carry_azimuths_over(&damaged, spool).await;
+    let actions = carry_actions_over(&damaged, spool).await;
     damaged.close().await;
     tracing::warn!(
         state,
@@ -170,6 +178,7 @@ async fn carry_over(aside: &Path, spool: &Spool) {
         batches,
         reports,
         azimuths,
+        actions,
         "carried over from the damaged spool"
     );
 }
@@ -201,6 +210,24 @@ async fn carry_azimuths_over(damaged: &SqlitePool, spool: &Spool) -> usize {
             continue;
         };
         carried += usize::from(azimuths::put(&mut connection, &azimuth).await.is_ok());
+    }
+    carried
+}
+
+async fn carry_actions_over(damaged: &SqlitePool, spool: &Spool) -> usize {
+    let mut carried = 0;
+    let all = "SELECT at_micros, address, action, result FROM actions ORDER BY number";
+    for row in rows(damaged, all).await {
+        let Some(action) = actions::Row::from_row(&row)
+            .ok()
+            .and_then(|row| row.read().ok())
+        else {
+            continue;
+        };
+        let Ok(mut connection) = spool.pool.acquire().await else {
+            continue;
+        };
+        carried += usize::from(actions::put(&mut connection, &action).await.is_ok());
     }
     carried
 }

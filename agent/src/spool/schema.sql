@@ -52,3 +52,10 @@ CREATE TABLE IF NOT EXISTS azimuths (
     standing       TEXT NOT NULL CHECK (standing IN ('waiting', 'ashore', 'refused')),
     problem        TEXT
 );
+CREATE TABLE IF NOT EXISTS actions (
+    number    INTEGER PRIMARY KEY,
+    at_micros BIGINT NOT NULL,
+    address   TEXT NOT NULL,
+    action    TEXT NOT NULL,
+    result    TEXT NOT NULL
+);

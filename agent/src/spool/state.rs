@@ -3,7 +3,7 @@
 use super::account::BudgetAccount;
 use super::database::{Spool, forget, put, text};
 use super::keys::{
-    ACCOUNT, ALERT, CLOCK_CHECKPOINT, EXCLUSION, LAST_CONTACT, MODEL, PAGE, SETTINGS, WITHDRAWN,
+    ACCOUNT, ALERT, CLOCK_CHECKPOINT, EXCLUSION, LAST_CONTACT, MODEL, SETTINGS, WITHDRAWN,
 };
 use crate::alert::AlertRecord;
 use crate::instruments::ClockCheckpoint;
@@ -11,7 +11,6 @@ use crate::sampler::Exclusion;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::{CardWithdrawn, Downlink, ModelDownlink, Settings};
 use sqlx::SqliteConnection;
-use std::net::SocketAddr;
 
 impl Spool {
     /// Returns the last model from the server.
@@ -97,18 +96,6 @@ impl Spool {
     pub(crate) async fn set_exclusion(&self, exclusion: Option<Exclusion>) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, EXCLUSION, &exclusion).await?;
-        tx.commit().await
-    }
-
-    /// Returns the address of the running agent's page, for the command line.
-    pub(crate) async fn page_address(&self) -> sqlx::Result<Option<SocketAddr>> {
-        Ok(self.get(PAGE).await?.flatten())
-    }
-
-    /// Saves the address of the page, or that there is none.
-    pub(crate) async fn set_page_address(&self, address: Option<SocketAddr>) -> sqlx::Result<()> {
-        let mut tx = self.write().await?;
-        put(&mut tx, PAGE, &address).await?;
         tx.commit().await
     }
 }

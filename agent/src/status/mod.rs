@@ -1,6 +1,7 @@
 //! Status of the agent in one value: for the local page and for `status`.
 
 mod offline;
+pub(crate) mod status_socket;
 mod text;
 
 pub(crate) use offline::offline_status;
@@ -21,14 +22,21 @@ use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
+use tokio::time::Instant;
 
 /// Status of the agent, as the page shows it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Status {
     /// Version of the agent.
     pub(crate) agent_version: String,
-    /// Set while an agent is running: the rest is live then, otherwise from the spool.
+    /// Set while an agent is running.
     pub(crate) running: bool,
+    /// Age of the live values; none where the spool alone was read.
+    #[serde(default)]
+    pub(crate) age_s: Option<f64>,
+    /// Time at which the live values were put together.
+    #[serde(skip)]
+    pub(crate) built_at: Option<Instant>,
     pub(crate) vessel_name: Option<String>,
     pub(crate) compass_name: Option<String>,
     /// GNSS time.
@@ -79,6 +87,17 @@ pub(crate) struct Status {
     /// Raw log.
     #[serde(default, rename = "ring")]
     pub(crate) raw_log: Option<RawLogStatus>,
+}
+
+impl Status {
+    /// Returns the status with its age.
+    pub(crate) fn aged(&self, now: Instant) -> Status {
+        let age = self.built_at.map(|at| now.saturating_duration_since(at));
+        Status {
+            age_s: age.map(|age| age.as_secs_f64()),
+            ..self.clone()
+        }
+    }
 }
 
 /// Interference with the receivers of satellites.

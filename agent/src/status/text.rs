@@ -5,6 +5,9 @@ use binnacle_wire::alert::ShipAlertState;
 use binnacle_wire::messages::CardWithdrawn;
 use std::fmt::Write;
 
+/// Age up to which live values need no remark, seconds: they are put together every second.
+const FRESH_S: f64 = 3.0;
+
 impl Status {
     /// Formats the status in one line, for the service manager.
     pub(crate) fn line(&self) -> String {
@@ -30,10 +33,11 @@ impl Status {
     }
 
     fn write_text(&self, out: &mut String) -> std::fmt::Result {
-        let running = if self.running {
-            "running"
-        } else {
-            "not running"
+        let running = match (self.running, self.age_s) {
+            (true, Some(age_s)) if age_s > FRESH_S => format!("running, values {age_s:.0} s old"),
+            (true, Some(_)) => "running".to_owned(),
+            (true, None) => "running, but does not respond: as stored on the disk".to_owned(),
+            (false, _) => "not running".to_owned(),
         };
         writeln!(out, "agent      {} {running}", self.agent_version)?;
         if let (Some(vessel), Some(compass)) = (&self.vessel_name, &self.compass_name) {
