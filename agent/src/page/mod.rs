@@ -1,4 +1,4 @@
-//! The local page: one HTML file, the status as JSON, the hold buttons, and the forms of logbook and
+//! The local page: its files, the status as JSON, the hold buttons, and the forms of logbook and
 //! azimuths.
 //!
 //! For the vessel's own network. Everybody there may read it. What changes the heading or the log
@@ -11,6 +11,7 @@ mod actions;
 mod azimuths;
 mod exclusions;
 mod reports;
+mod site;
 
 mod author;
 mod state;
@@ -27,9 +28,7 @@ use crate::status::Status;
 use acknowledgements::acknowledge;
 use anyhow::Context;
 use axum::extract::{DefaultBodyLimit, State};
-use axum::http::header::{CONTENT_SECURITY_POLICY, CONTENT_TYPE};
 use axum::middleware;
-use axum::response::{Html, IntoResponse};
 use axum::routing::{get, post, put};
 use axum::{Json, Router};
 use binnacle_listener::Limits;
@@ -83,13 +82,12 @@ pub(crate) async fn serve(
 /// Returns the routes of the page.
 pub(crate) fn router(page: PageState) -> Router {
     Router::new()
-        .route("/", get(show))
+        .merge(site::routes())
         .route("/api/status", get(status))
         .route("/api/hold", post(set_exclusion))
         .route("/api/alert/acknowledge", post(acknowledge))
         .route("/api/access", get(actions::show_access))
         .route("/api/actions", get(actions::list_actions))
-        .route("/azimuths.js", get(azimuth_script))
         .route("/api/azimuths", get(azimuths::list_azimuths))
         .route("/api/azimuths/{id}", put(azimuths::put_azimuth))
         .route("/api/reports", get(reports::list_reports))
@@ -97,22 +95,6 @@ pub(crate) fn router(page: PageState) -> Router {
         .layer(DefaultBodyLimit::max(MAX_REQUEST_BYTES))
         .layer(middleware::from_fn(reject_foreign_sites))
         .with_state(page)
-}
-
-async fn show() -> impl IntoResponse {
-    let policy = "default-src 'none'; script-src 'self' 'unsafe-inline'; style-src 'unsafe-inline'; \
-                  connect-src 'self'; form-action 'none'; frame-ancestors 'none'";
-    (
-        [(CONTENT_SECURITY_POLICY, policy)],
-        Html(include_str!("page.html")),
-    )
-}
-
-async fn azimuth_script() -> impl IntoResponse {
-    (
-        [(CONTENT_TYPE, "text/javascript; charset=utf-8")],
-        include_str!("azimuths.js"),
-    )
 }
 
 async fn status(State(page): State<PageState>) -> Json<Arc<Status>> {
@@ -275,14 +257,6 @@ pub(crate) mod tests {
             let request = request.body(Body::empty()).unwrap();
             let response = router.clone().oneshot(request).await.unwrap();
             assert_eq!(response.status(), status, "{host}");
-        }
-    }
-
-    #[test]
-    fn the_page_asks_nothing_of_the_outside_world() {
-        let html = concat!(include_str!("page.html"), include_str!("azimuths.js"));
-        for outside in ["http://", "https://", "//cdn", "@import", "<link"] {
-            assert!(!html.contains(outside), "{outside}");
         }
     }
 

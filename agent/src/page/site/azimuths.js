@@ -88,14 +88,10 @@ function observation() {
   };
 }
 async function saveAzimuth(id, azimuth) {
-  const response = await fetch("api/azimuths/" + id, {
-    method: "PUT",
-    headers: { "Content-Type": "application/json", "X-Binnacle-Request": "1" },
-    body: JSON.stringify(azimuth),
-  }).catch(() => null);
+  const response = await alter("PUT", "api/azimuths/" + id, azimuth);
   if (response?.ok) return response.json();
   const text = await response?.text().catch(() => "");
-  throw new Error(text || "The agent does not respond; nothing was saved.");
+  throw new Error(text || "Nothing was saved.");
 }
 
 const errorsOf = (result) => ["compass error " + side(result.compass_error_deg),
