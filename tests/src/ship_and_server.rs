@@ -256,7 +256,7 @@ pub async fn wait_until_idle(ship: &Ship) -> Result<Spool> {
     .await
 }
 
-/// Copies the files of a folder.
+/// Copies the files of a folder, but no socket.
 ///
 /// # Errors
 /// Fails when one cannot be read or written.
@@ -264,6 +264,9 @@ pub fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     std::fs::create_dir_all(to)?;
     for entry in std::fs::read_dir(from)? {
         let entry = entry?;
+        if !entry.file_type()?.is_file() {
+            continue;
+        }
         std::fs::copy(entry.path(), to.join(entry.file_name()))?;
     }
     Ok(())

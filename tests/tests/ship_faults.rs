@@ -390,6 +390,7 @@ async fn hostile_input() -> Result<()> {
         "spool.db",
         "spool.db-shm",
         "spool.db-wal",
+        "status.sock",
     ];
     let state: BTreeSet<String> = state
         .iter()
