@@ -26,7 +26,7 @@ use tracing::debug;
 /// Size limit of a request's head, and of what is sent ahead of a slow reader, bytes.
 const BUFFER_BYTES: usize = 64 * 1024;
 
-/// What all connections of a listener share.
+/// Parts that all connections of a listener share.
 #[derive(Clone, Debug)]
 pub(crate) struct Shared<H> {
     pub(crate) limits: Arc<Limits>,

@@ -1,4 +1,4 @@
-//! Whose turn it is on a connection, and until when.
+//! Turns of server and peer on a connection, with their deadlines.
 //!
 //! Invariant: whatever waits for the peer has a deadline here. Nothing has a timer of its own: the
 //! connection asks for the verdict now and then.
@@ -13,7 +13,7 @@ use tokio::time::Instant;
 /// keeps pace at 137 bytes a second, less than half of what a satellite telephone carries.
 pub(crate) const PIECE_BYTES: usize = 8 * 1024;
 
-/// What is to happen to a connection.
+/// Fate of a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
     /// It goes on.

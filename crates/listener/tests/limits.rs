@@ -8,7 +8,7 @@ use futures_util::stream;
 use std::convert::Infallible;
 use std::future::pending;
 use std::io;
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
@@ -46,9 +46,9 @@ fn generous() -> Limits {
 struct Served {
     address: SocketAddr,
     go: Arc<Notify>,
-    /// Told each time a handler or a body of `/endless` or `/upload` is dropped.
+    /// Receives one each time a handler or a body of `/endless` or `/upload` is dropped.
     ended: mpsc::UnboundedReceiver<()>,
-    /// Told when `/slow` is called.
+    /// Receives one when `/slow` is called.
     called: mpsc::UnboundedReceiver<()>,
     stopping: CancellationToken,
     serving: JoinHandle<usize>,
@@ -222,6 +222,12 @@ async fn an_address_has_its_number_of_connections_and_gets_them_back() {
         held.push(connect(served.address, b"GET").await);
     }
     assert!(ask(served.address).await.is_err());
+    let other = client().local_address(IpAddr::from([127, 0, 0, 2]));
+    let request = other
+        .build()
+        .unwrap()
+        .get(format!("http://{}/", served.address));
+    assert_eq!(request.send().await.unwrap().text().await.unwrap(), "here");
     held.pop();
     // The listener learns of the end by itself.
     let again = async { while ask(served.address).await.is_err() {} };
