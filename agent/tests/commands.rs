@@ -14,7 +14,9 @@ use sqlx::{Connection, SqliteConnection};
 use std::fmt::Write;
 use std::net::SocketAddr;
 use std::path::Path;
+use std::process::Stdio;
 use tempfile::TempDir;
+use tokio::io::{AsyncBufReadExt, AsyncWriteExt, BufReader};
 
 fn nowhere() -> SocketAddr {
     "127.0.0.1:9".parse().unwrap()
@@ -222,6 +224,70 @@ async fn a_hold_reaches_the_running_agent_and_outlasts_it() {
     agent.call(&["hold", "off"]).await;
     let status = agent.call(&["status"]).await;
     assert!(!text(&status.stdout).contains("hold"));
+}
+
+#[tokio::test]
+async fn the_status_is_live_without_a_page_and_says_when_nobody_responds() {
+    let agent = Agent::new(nowhere());
+    let config = std::fs::read_to_string(agent.config()).unwrap();
+    let without = config.replace("[page]\nlisten = \"127.0.0.1:0\"\n", "");
+    assert_ne!(config, without);
+    std::fs::write(agent.config(), without).unwrap();
+    let mut run = command();
+    run.arg("run").arg("--config").arg(agent.config());
+    let mut process = run.stderr(Stdio::piped()).spawn().unwrap();
+    let mut log = BufReader::new(process.stderr.take().unwrap()).lines();
+    while !log.next_line().await.unwrap().unwrap().contains(" ready ") {}
+
+    let status = agent.call(&["status", "--json"]).await;
+    let status: Value = serde_json::from_slice(&status.stdout).unwrap();
+    assert_eq!(status["running"], true);
+    assert!(status["age_s"].as_f64() < Some(60.0), "{status}");
+    assert_eq!(status["inputs"][0]["name"], "bridge");
+
+    // The socket is gone, the agent is not.
+    let socket = agent.spool().with_file_name("status.sock");
+    std::fs::remove_file(socket).unwrap();
+    let said = text(&agent.call(&["status"]).await.stdout);
+    assert!(said.contains("running, but does not respond"), "{said}");
+    process.kill().await.unwrap();
+    let said = text(&agent.call(&["status"]).await.stdout);
+    assert!(said.contains(" not running\n"), "{said}");
+}
+
+#[tokio::test]
+async fn a_pin_guards_the_page_and_changes_are_recorded() {
+    let agent = Agent::new(nowhere());
+    let mut hash = command();
+    let hash = hash.arg("page-pin").stdin(Stdio::piped());
+    let mut hash = hash.stdout(Stdio::piped()).spawn().unwrap();
+    let mut typing = hash.stdin.take().unwrap();
+    typing.write_all(b"271828\n").await.unwrap();
+    drop(typing);
+    let line = text(&hash.wait_with_output().await.unwrap().stdout);
+    agent.configure("[page]", line.trim());
+
+    let running = agent.run().await;
+    let hold = async |pin: &str| {
+        let request = reqwest::Client::new()
+            .post(format!("http://{}/api/hold", running.page))
+            .header("x-binnacle-request", "1")
+            .header("x-binnacle-pin", pin)
+            .json(&json!({ "hold": "berthed" }));
+        request.send().await.unwrap().status().as_u16()
+    };
+    fetch(running.page, "/").await;
+    assert_eq!(hold("314159").await, 401);
+    assert_eq!(hold("271828").await, 200);
+    agent.call(&["hold", "off"]).await;
+    let said = text(&agent.call(&["actions"]).await.stdout);
+    let lines: Vec<&str> = said.lines().map(|line| &line[22..]).collect();
+    let wanted = [
+        "127.0.0.1  PIN: wrong",
+        "127.0.0.1  hold: berthed: done",
+        "command line  hold ended: done",
+    ];
+    assert_eq!(lines, wanted, "{said}");
 }
 
 #[tokio::test]

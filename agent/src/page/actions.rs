@@ -1,4 +1,4 @@
-//! What was altered from this page, and who may alter something.
+//! Record of the changes on board, and the right to make them.
 
 use super::request_guard::Refusal;
 use super::state::PageState;

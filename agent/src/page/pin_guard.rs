@@ -1,5 +1,5 @@
-//! Who may alter what the agent has: who knows the PIN, or where none is set, whoever is at the
-//! agent's own computer.
+//! Right to alter what the agent has: by the PIN, or where none is set, by being at the agent's own
+//! computer.
 
 use super::throttle::Throttle;
 use crate::config::Pin;

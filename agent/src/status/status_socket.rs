@@ -49,7 +49,15 @@ pub(crate) fn serve(
     });
 }
 
-async fn send_to_all(listener: UnixListener, status: watch::Receiver<Arc<Status>>) {
+async fn send_to_all(listener: UnixListener, mut status: watch::Receiver<Arc<Status>>) {
+    // Who connects before the agent knows anything waits.
+    if status
+        .wait_for(|status| status.built_at.is_some())
+        .await
+        .is_err()
+    {
+        return;
+    }
     loop {
         let Ok((stream, _)) = listener.accept().await else {
             sleep(PAUSE).await;
@@ -135,7 +143,11 @@ mod tests {
         let killed = on_socket(directory.path(), |path| UnixListener::bind(path));
         drop(killed.unwrap());
         assert!(fetch(directory.path()).await.is_err());
-        let (_sender, receiver) = watch::channel(Arc::new(Status::default()));
+        let status = Status {
+            built_at: Some(Instant::now()),
+            ..Status::default()
+        };
+        let (_sender, receiver) = watch::channel(Arc::new(status));
         serve(directory.path(), receiver, &CancellationToken::new());
         fetch(directory.path()).await.unwrap();
     }
