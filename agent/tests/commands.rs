@@ -281,7 +281,10 @@ async fn a_pin_guards_the_page_and_changes_are_recorded() {
     assert_eq!(hold("271828").await, 200);
     agent.call(&["hold", "off"]).await;
     let said = text(&agent.call(&["actions"]).await.stdout);
-    let lines: Vec<&str> = said.lines().map(|line| &line[22..]).collect();
+    let lines: Vec<&str> = said
+        .lines()
+        .map(|line| line.split_once(" UTC  ").unwrap().1)
+        .collect();
     let wanted = [
         "127.0.0.1  PIN: wrong",
         "127.0.0.1  hold: berthed: done",

@@ -66,7 +66,8 @@ pub(super) async fn actions(config: &Config, last: u32) -> anyhow::Result<()> {
     let spool = Spool::open(&config.data_dir).await?;
     let mut out = std::io::stdout().lock();
     for action in spool.actions(last).await?.iter().rev() {
-        let (at, address) = (action.at, &action.address);
+        let at = action.at.to_chrono().format("%Y-%m-%d %H:%M:%S UTC");
+        let address = &action.address;
         writeln!(out, "{at}  {address}  {}: {}", action.action, action.result)?;
     }
     Ok(())
