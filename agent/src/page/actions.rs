@@ -2,7 +2,7 @@
 
 use super::request_guard::Refusal;
 use super::state::PageState;
-use crate::spool::Action;
+use crate::spool::BoardAction;
 use axum::Json;
 use axum::extract::{ConnectInfo, State};
 use axum::http::StatusCode;
@@ -35,7 +35,7 @@ pub(super) async fn show_access(
 /// Lists the last actions, the latest first.
 pub(super) async fn list_actions(
     State(page): State<PageState>,
-) -> Result<Json<Vec<Action>>, Refusal> {
+) -> Result<Json<Vec<BoardAction>>, Refusal> {
     page.spool.actions(LISTED).await.map(Json).map_err(|error| {
         tracing::error!(%error, "the actions cannot be read");
         let why = "the actions cannot be read".to_owned();

@@ -8,9 +8,9 @@ use sqlx::SqliteConnection;
 /// Number of actions that are kept: some years of a usual ship.
 const MAX_KEPT: i64 = 10_000;
 
-/// Action of a person on board.
+/// BoardAction of a person on board.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Action {
+pub(crate) struct BoardAction {
     /// Time on board.
     pub(crate) at: Timestamp,
     /// Address of the browser, or `command line`.
@@ -30,9 +30,9 @@ pub(super) struct Row {
 }
 
 impl Row {
-    pub(super) fn read(self) -> sqlx::Result<Action> {
+    pub(super) fn read(self) -> sqlx::Result<BoardAction> {
         let at = Timestamp::from_micros(self.at_micros);
-        Ok(Action {
+        Ok(BoardAction {
             at: at.map_err(|error| sqlx::Error::Decode(error.into()))?,
             address: self.address,
             action: self.action,
@@ -50,7 +50,7 @@ impl Spool {
         action: &str,
         result: &str,
     ) -> sqlx::Result<()> {
-        let action = Action {
+        let action = BoardAction {
             at,
             address: address.to_owned(),
             action: action.to_owned(),
@@ -66,7 +66,7 @@ impl Spool {
     }
 
     /// Lists the last actions, the latest first.
-    pub(crate) async fn actions(&self, limit: u32) -> sqlx::Result<Vec<Action>> {
+    pub(crate) async fn actions(&self, limit: u32) -> sqlx::Result<Vec<BoardAction>> {
         let rows: Vec<Row> = sqlx::query_as(
             "SELECT at_micros, address, action, result FROM actions
              ORDER BY number DESC LIMIT $1",
@@ -78,7 +78,10 @@ impl Spool {
     }
 }
 
-pub(super) async fn put(connection: &mut SqliteConnection, action: &Action) -> sqlx::Result<()> {
+pub(super) async fn put(
+    connection: &mut SqliteConnection,
+    action: &BoardAction,
+) -> sqlx::Result<()> {
     sqlx::query("INSERT INTO actions (at_micros, address, action, result) VALUES ($1, $2, $3, $4)")
         .bind(action.at.micros())
         .bind(&action.address)

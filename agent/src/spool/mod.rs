@@ -38,7 +38,7 @@ mod enrolment;
 mod repair;
 
 pub(crate) use account::{BudgetAccount, REQUEST_BYTES};
-pub(crate) use actions::Action;
+pub(crate) use actions::BoardAction;
 pub(crate) use batches::SealedBatch;
 pub(crate) use database::Spool;
 pub(crate) use identity::Identity;

@@ -1,5 +1,7 @@
 //! Peers that do not go on, and those that do, on real connections.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests may panic too")]
+
 use axum::Router;
 use axum::body::{Body, Bytes};
 use axum::routing::{get, post};
