@@ -8,7 +8,7 @@ use sqlx::SqliteConnection;
 /// Number of actions that are kept: some years of a usual ship.
 const MAX_KEPT: i64 = 10_000;
 
-/// BoardAction of a person on board.
+/// Action of a person on board.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct BoardAction {
     /// Time on board.
