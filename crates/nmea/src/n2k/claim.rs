@@ -1,78 +1,23 @@
-//! Address claim of a device, with what every device on a bus says of itself.
+//! Address claim of a device, and its responses to requests (ISO 11783-5, ISO 11783-3).
 //!
-//! Of two devices that claim an address, the one with the lower NAME keeps it (ISO 11783-5); the
-//! other claims the next free one. A device sends nothing else before its claim has stood for
-//! 250 ms.
+//! Of two devices that claim an address, the one with the lower NAME keeps it; the other claims the
+//! next free one, or says that it cannot claim one. A device sends nothing else before its claim
+//! has stood for [`CLAIM_TIME`].
 
 use super::data::Data;
-use super::frame::{ADDRESS_CLAIM, ALL, Header, Message, REQUEST};
+use super::device::{
+    ACKNOWLEDGEMENT, Device, GROUP_LIST, HEARTBEAT, PRODUCT_INFORMATION, group_bytes, group_lists,
+    heartbeat, refusal, to,
+};
+use super::frame::{ADDRESS_CLAIM, ALL, Message, REQUEST};
 use super::identity::{Address, Name};
+use std::time::Duration;
 
+/// Time for which a claim must stand (ISO 11783-5: 250 ms).
+pub const CLAIM_TIME: Duration = Duration::from_millis(250);
 /// Source of a device without an address.
 const NO_ADDRESS: u8 = 254;
 const ADDRESSES: u8 = 252;
-const PRODUCT_INFORMATION: u32 = 126_996;
-const HEARTBEAT: u32 = 126_993;
-/// Interval of the heartbeat, milliseconds.
-const HEARTBEAT_MS: u16 = 60_000;
-/// Version of the standard, thousandths.
-const STANDARD_VERSION: u16 = 2_100;
-const TEXT_BYTES: usize = 32;
-
-/// Device on the bus.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Device {
-    /// Unique number, of 21 bits.
-    pub unique_number: u32,
-    /// Manufacturer's code, of 11 bits.
-    pub manufacturer: u16,
-    /// Name of the product.
-    pub model: String,
-    /// Version of the program.
-    pub software: String,
-    /// Serial number.
-    pub serial: String,
-}
-
-impl Device {
-    /// Returns the NAME of a sensor of the ship's heading that may have any address.
-    pub fn name(&self) -> Name {
-        const FUNCTION_HEADING: u64 = 140;
-        const CLASS_NAVIGATION: u64 = 60;
-        const MARINE: u64 = 4;
-        const ANY_ADDRESS: u64 = 1;
-        Name::from_number(
-            u64::from(self.unique_number & 0x1f_ffff)
-                | (u64::from(self.manufacturer & 0x7ff) << 21)
-                | (FUNCTION_HEADING << 40)
-                | (CLASS_NAVIGATION << 49)
-                | (MARINE << 60)
-                | (ANY_ADDRESS << 63),
-        )
-    }
-
-    /// Returns the product information, to all.
-    pub fn product_information(&self, source: Address) -> Message {
-        let mut data = STANDARD_VERSION.to_le_bytes().to_vec();
-        data.extend([0, 0]);
-        for text in [&self.model, &self.software, "", &self.serial].map(|text| text as &str) {
-            let bytes = text.bytes().filter(u8::is_ascii).take(TEXT_BYTES);
-            let from = data.len();
-            data.extend(bytes);
-            data.resize(from + TEXT_BYTES, 0xff);
-        }
-        // Certification level unknown; the bus need not power it.
-        data.extend([0, 0]);
-        to_all(6, PRODUCT_INFORMATION, source.number(), data)
-    }
-
-    /// Returns the heartbeat, to all.
-    pub fn heartbeat(source: Address, sequence: u8) -> Message {
-        let [low, high] = HEARTBEAT_MS.to_le_bytes();
-        let data = vec![low, high, sequence % 253, 0xff, 0xff, 0xff, 0xff, 0xff];
-        to_all(7, HEARTBEAT, source.number(), data)
-    }
-}
 
 /// State of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,32 +38,40 @@ pub struct AddressClaim {
     /// Addresses that other devices claimed.
     taken: [bool; ADDRESSES as usize],
     state: ClaimState,
+    heartbeats: u8,
 }
 
 impl AddressClaim {
-    /// Begins with an address. Returns the claim to send as well.
-    pub fn begin(device: Device, preferred: Address) -> (AddressClaim, Message) {
+    /// Begins with an address. Returns the messages to send as well: the claim, and the request that
+    /// all devices claim theirs.
+    pub fn begin(device: Device, preferred: Address) -> (AddressClaim, [Message; 2]) {
         let claim = AddressClaim {
             device,
             address: preferred.number(),
             taken: [false; ADDRESSES as usize],
             state: ClaimState::Claiming,
+            heartbeats: 0,
         };
-        let message = claim.message();
-        (claim, message)
+        let others = group_bytes(ADDRESS_CLAIM).to_vec();
+        let others = to(ALL, 6, REQUEST, NO_ADDRESS, others);
+        let own = claim.claim_message();
+        (claim, [own, others])
     }
 
-    /// The state.
+    /// Returns the state.
     pub fn state(&self) -> ClaimState {
         self.state
     }
 
-    /// The device.
-    pub fn device(&self) -> &Device {
-        &self.device
+    /// Returns the address while it is the device's.
+    pub fn address(&self) -> Option<Address> {
+        match self.state {
+            ClaimState::Claimed(address) => Some(address),
+            ClaimState::Claiming | ClaimState::Lost => None,
+        }
     }
 
-    /// Records that the claim has stood for 250 ms.
+    /// Records that the claim has stood for [`CLAIM_TIME`].
     pub fn confirm(&mut self) {
         if self.state == ClaimState::Claiming
             && let Some(address) = Address::new(self.address)
@@ -127,20 +80,48 @@ impl AddressClaim {
         }
     }
 
-    /// Applies a message of the bus. Returns the response to send, if any; a new claim must stand
-    /// for 250 ms again.
-    pub fn observe(&mut self, message: &Message) -> Option<Message> {
-        let is_to_us = [ALL, self.address].contains(&message.header.destination);
-        match Data::parse(message)? {
-            Data::AddressClaim { name } => self.observe_claim(message.header.source, name),
-            Data::Request { pgn: ADDRESS_CLAIM } if is_to_us => Some(self.message()),
-            Data::Request {
-                pgn: PRODUCT_INFORMATION,
-            } if is_to_us => match self.state {
-                ClaimState::Claimed(address) => Some(self.device.product_information(address)),
-                ClaimState::Claiming | ClaimState::Lost => None,
-            },
-            _ => None,
+    /// Returns the next heartbeat; none without an address.
+    pub fn next_heartbeat(&mut self) -> Option<Message> {
+        let message = heartbeat(self.address()?, self.heartbeats);
+        self.heartbeats = self.heartbeats.wrapping_add(1) % 253;
+        Some(message)
+    }
+
+    /// Applies a message of the bus. Returns the responses to send. A claim of another address is
+    /// one of them, and must stand for [`CLAIM_TIME`] again.
+    pub fn observe(&mut self, message: &Message) -> Vec<Message> {
+        let header = message.header;
+        match Data::parse(message) {
+            Some(Data::AddressClaim { name }) => self
+                .observe_claim(header.source, name)
+                .into_iter()
+                .collect(),
+            Some(Data::Request { pgn }) if [ALL, self.address].contains(&header.destination) => {
+                self.respond(pgn, header.source, header.destination != ALL)
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Returns the responses to a request. Only one that was sent to the device alone is refused.
+    fn respond(&mut self, pgn: u32, requester: u8, is_alone: bool) -> Vec<Message> {
+        if pgn == ADDRESS_CLAIM {
+            return vec![self.claim_message()];
+        }
+        let Some(address) = self.address() else {
+            return Vec::new();
+        };
+        let source = address.number();
+        match pgn {
+            PRODUCT_INFORMATION => {
+                vec![to(ALL, 6, pgn, source, self.device.product_information())]
+            }
+            GROUP_LIST => group_lists()
+                .map(|list| to(requester, 6, pgn, source, list))
+                .into(),
+            HEARTBEAT => self.next_heartbeat().into_iter().collect(),
+            _ if is_alone => vec![to(requester, 6, ACKNOWLEDGEMENT, source, refusal(pgn))],
+            _ => Vec::new(),
         }
     }
 
@@ -149,55 +130,37 @@ impl AddressClaim {
             // Its own, or its echo.
             return None;
         }
-        if let Some(taken) = self.taken.get_mut(usize::from(source)) {
-            *taken = true;
-        }
-        if source != self.address || self.state == ClaimState::Lost {
+        *self.taken.get_mut(usize::from(source))? = true;
+        if source != self.address {
             return None;
         }
         if self.device.name() < name {
             self.taken[usize::from(source)] = false;
-            return Some(self.message());
+            return Some(self.claim_message());
         }
         let first = usize::from(self.address);
         let all = usize::from(ADDRESSES);
-        let next = (0..all).map(|step| (first + step) % all);
-        let free = next.into_iter().find(|address| !self.taken[*address]);
+        let mut next = (0..all).map(|step| (first + step) % all);
+        let free = next.find(|address| !self.taken[*address]);
         self.address = free.map_or(NO_ADDRESS, |address| address as u8);
         self.state = match free {
             Some(_) => ClaimState::Claiming,
             None => ClaimState::Lost,
         };
-        Some(self.message())
+        Some(self.claim_message())
     }
 
-    fn message(&self) -> Message {
+    /// Returns the claim; without an address, the message that it cannot claim one.
+    fn claim_message(&self) -> Message {
         let name = self.device.name().number().to_le_bytes().to_vec();
-        to_all(6, ADDRESS_CLAIM, self.address, name)
-    }
-}
-
-/// Returns the request that all devices claim their addresses.
-pub fn request_claims() -> Message {
-    let [low, middle, high, _] = ADDRESS_CLAIM.to_le_bytes();
-    to_all(6, REQUEST, NO_ADDRESS, vec![low, middle, high])
-}
-
-fn to_all(priority: u8, pgn: u32, source: u8, data: Vec<u8>) -> Message {
-    Message {
-        header: Header {
-            priority,
-            pgn,
-            source,
-            destination: ALL,
-        },
-        data,
+        to(ALL, 6, ADDRESS_CLAIM, self.address, name)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn device() -> Device {
         Device {
@@ -210,7 +173,11 @@ mod tests {
     }
 
     fn claim_by(name: u64, address: u8) -> Message {
-        to_all(6, ADDRESS_CLAIM, address, name.to_le_bytes().to_vec())
+        to(ALL, 6, ADDRESS_CLAIM, address, name.to_le_bytes().to_vec())
+    }
+
+    fn request(pgn: u32, destination: u8) -> Message {
+        to(destination, 6, REQUEST, 4, group_bytes(pgn).to_vec())
     }
 
     fn begun() -> AddressClaim {
@@ -219,34 +186,37 @@ mod tests {
 
     #[test]
     fn a_claim_that_nobody_contests_stands() {
-        let (mut claim, message) = AddressClaim::begin(device(), Address::new(35).unwrap());
+        let preferred = Address::new(35).unwrap();
+        let (mut claim, [own, others]) = AddressClaim::begin(device(), preferred);
+        assert_eq!((own.header.pgn, own.header.source), (ADDRESS_CLAIM, 35));
         assert_eq!(
-            (message.header.pgn, message.header.source),
-            (ADDRESS_CLAIM, 35)
+            (others.header.pgn, others.header.source),
+            (REQUEST, NO_ADDRESS)
         );
-        assert_eq!(claim.observe(&claim_by(1, 4)), None);
-        assert_eq!(claim.state(), ClaimState::Claiming);
+        assert_eq!(claim.observe(&claim_by(1, 4)), []);
+        assert_eq!(
+            (claim.state(), claim.address()),
+            (ClaimState::Claiming, None)
+        );
         claim.confirm();
-        assert_eq!(
-            claim.state(),
-            ClaimState::Claimed(Address::new(35).unwrap())
-        );
+        assert_eq!(claim.address(), Some(preferred));
     }
 
     #[test]
     fn the_lower_name_keeps_the_address() {
         let mut claim = begun();
         claim.confirm();
-        let ours = claim.observe(&claim_by(u64::MAX, 35)).unwrap();
-        assert_eq!(ours.header.source, 35);
+        let ours = claim.observe(&claim_by(u64::MAX, 35));
+        assert_eq!(ours[0].header.source, 35);
+        assert_eq!(claim.address().map(Address::number), Some(35));
         claim.observe(&claim_by(1, 36));
-        let next = claim.observe(&claim_by(2, 35)).unwrap();
+        let next = claim.observe(&claim_by(2, 35));
         assert_eq!(
-            (next.header.source, claim.state()),
+            (next[0].header.source, claim.state()),
             (37, ClaimState::Claiming)
         );
         // Its own echo contests nothing.
-        assert_eq!(claim.observe(&next), None);
+        assert_eq!(claim.observe(&next[0]), []);
     }
 
     #[test]
@@ -255,30 +225,87 @@ mod tests {
         for address in (0..ADDRESSES).filter(|address| *address != 35) {
             claim.observe(&claim_by(u64::from(address), address));
         }
-        let lost = claim.observe(&claim_by(0, 35)).unwrap();
+        let lost = claim.observe(&claim_by(0, 35));
         assert_eq!(
-            (lost.header.source, claim.state()),
+            (lost[0].header.source, claim.state()),
             (NO_ADDRESS, ClaimState::Lost)
         );
         claim.confirm();
         assert_eq!(claim.state(), ClaimState::Lost);
+        assert_eq!(claim.observe(&request(ADDRESS_CLAIM, ALL)), lost);
+        assert_eq!(claim.observe(&request(PRODUCT_INFORMATION, ALL)), []);
+        assert_eq!(claim.next_heartbeat(), None);
     }
 
     #[test]
     fn requests_are_met_as_far_as_the_claim_allows() {
         let mut claim = begun();
-        let request = |pgn: u32, destination| {
-            let [low, middle, high, _] = pgn.to_le_bytes();
-            let mut message = to_all(6, REQUEST, 4, vec![low, middle, high]);
-            message.header.destination = destination;
-            message
-        };
-        assert!(claim.observe(&request(ADDRESS_CLAIM, ALL)).is_some());
-        assert_eq!(claim.observe(&request(PRODUCT_INFORMATION, 35)), None);
+        assert_eq!(claim.observe(&request(ADDRESS_CLAIM, ALL)).len(), 1);
+        assert_eq!(claim.observe(&request(PRODUCT_INFORMATION, 35)), []);
         claim.confirm();
-        let product = claim.observe(&request(PRODUCT_INFORMATION, 35)).unwrap();
-        assert_eq!(product.data.len(), 134);
-        assert_eq!(&product.data[4..12], b"Binnacle");
-        assert_eq!(claim.observe(&request(PRODUCT_INFORMATION, 7)), None);
+        let product = claim.observe(&request(PRODUCT_INFORMATION, 35));
+        assert_eq!(product[0].data.len(), 134);
+        assert_eq!(&product[0].data[4..12], b"Binnacle");
+        assert_eq!(claim.observe(&request(PRODUCT_INFORMATION, 7)), []);
+        let lists = claim.observe(&request(GROUP_LIST, 35));
+        let [sent, acted_on] = &lists[..] else {
+            panic!("{lists:?}");
+        };
+        assert_eq!((sent.header.destination, sent.data[0]), (4, 0));
+        assert_eq!(acted_on.data, [1, 0x00, 0xea, 0x00, 0x00, 0xee, 0x00]);
+        let beat = claim.observe(&request(HEARTBEAT, ALL));
+        assert_eq!((beat[0].header.pgn, beat[0].data[2]), (HEARTBEAT, 0));
+        assert_eq!(claim.next_heartbeat().unwrap().data[2], 1);
+    }
+
+    #[test]
+    fn only_a_request_to_the_device_alone_is_refused() {
+        let mut claim = begun();
+        claim.confirm();
+        let refused = claim.observe(&request(126_998, 35));
+        assert_eq!(
+            (refused[0].header.pgn, refused[0].header.destination),
+            (59_392, 4)
+        );
+        assert_eq!(claim.observe(&request(126_998, ALL)), []);
+    }
+
+    proptest! {
+        /// Whatever the bus sends, an address that is used is one whose last claim was its own, or
+        /// was by a greater NAME.
+        #[test]
+        fn no_address_is_used_that_a_lower_name_has(
+            seen in prop::collection::vec((any::<u8>(), 0..5_u64, any::<bool>()), 0..400),
+        ) {
+            let mut claim = begun();
+            let ours = device().name().number();
+            let mut lower = [false; 256];
+            for (address, name, waits) in seen {
+                let name = if name == 4 { u64::MAX } else { ours - 1 - name };
+                let address = if waits { claim.address } else { address };
+                lower[usize::from(address)] = name < ours;
+                claim.observe(&claim_by(name, address));
+                claim.confirm();
+                if let Some(address) = claim.address() {
+                    prop_assert!(!lower[usize::from(address.number())]);
+                }
+            }
+        }
+
+        #[test]
+        fn no_message_is_answered_with_more_than_two(
+            pgn in prop::sample::select(vec![ADDRESS_CLAIM, REQUEST, HEARTBEAT]),
+            (source, destination) in any::<(u8, u8)>(),
+            data in prop::collection::vec(any::<u8>(), 0..12),
+        ) {
+            let mut claim = begun();
+            claim.confirm();
+            let message = to(destination, 6, pgn, source, data);
+            let responses = claim.observe(&message);
+            prop_assert!(responses.len() <= 2);
+            for response in responses {
+                prop_assert!(response.data.len() <= 223);
+            }
+        }
     }
 }

@@ -100,7 +100,7 @@ impl Assembler {
 
 /// Returns whether a parameter group comes in fast packets.
 fn is_fast_packet(pgn: u32) -> bool {
-    matches!(pgn, 129_029 | 126_996)
+    matches!(pgn, 126_464 | 126_996 | 129_029)
 }
 
 /// Splits a message into its frames; `sequence` tells apart fast packets of one group.

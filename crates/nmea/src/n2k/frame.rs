@@ -11,6 +11,11 @@ const FIRST_BROADCAST_FORMAT: u32 = 240;
 /// Bits of an extended CAN identifier.
 const IDENTIFIER_BITS: u32 = 0x1fff_ffff;
 
+/// Returns whether a parameter group is a claim or a request, which a sender on the bus must read.
+pub fn is_network_management(pgn: u32) -> bool {
+    matches!(pgn, ADDRESS_CLAIM | REQUEST)
+}
+
 /// Priority, parameter group, source and destination of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Header {

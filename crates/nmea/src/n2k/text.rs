@@ -64,6 +64,14 @@ pub fn parse_line(line: &[u8]) -> Option<Line> {
         .or_else(|| pcan(&words))
 }
 
+/// Returns whether a line of YDWG RAW repeats what a program gave the gateway to send.
+pub fn is_ydwg_echo(line: &[u8]) -> bool {
+    let mut words = line
+        .split(u8::is_ascii_whitespace)
+        .filter(|word| !word.is_empty());
+    words.nth(1) == Some(b"T")
+}
+
 /// Writes a frame as YDWG RAW takes it.
 pub fn write_ydwg(frame: &Frame) -> String {
     use std::fmt::Write as _;
@@ -340,6 +348,8 @@ mod tests {
         assert_eq!(line, "09F112CC FF 4B ED FF 7F FF 7F FD\r\n");
         let read = parse_line(format!("00:00:00.000 T {line}").as_bytes()).unwrap();
         assert_eq!(read.content, Content::Frame(heading_frame()));
+        assert!(is_ydwg_echo(format!("00:00:00.000 T {line}").as_bytes()));
+        assert!(!is_ydwg_echo(format!("00:00:00.000 R {line}").as_bytes()));
     }
 
     #[test]
