@@ -11,9 +11,11 @@ pub mod config;
 
 mod decode;
 mod link;
+mod port;
 mod pump;
 mod stats;
 
+mod can;
 mod file;
 mod n2k;
 mod serial;
@@ -26,8 +28,10 @@ mod udp;
 mod tests;
 
 pub use config::InputConfig;
+pub use port::{Port, PortEnd, PortEvent};
 pub use stats::{InputStats, InputStatus};
 
+use binnacle_nmea::n2k::Message;
 use binnacle_observation::Observation;
 use link::{Backoff, End, Link};
 use std::io;
@@ -36,26 +40,39 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
-/// Reads an input until `shutdown`, until the end of a file, or until the receiver is gone.
+/// Inputs' ends of the connections that outputs share.
+#[derive(Debug, Default)]
+pub struct SharedEnds {
+    /// End for messages of an NMEA 2000 bus.
+    pub bus: Option<PortEnd<Message>>,
+    /// End for deltas to a Signal K server.
+    pub deltas: Option<PortEnd<String>>,
+}
+
+/// Reads an input until `shutdown`, until the end of a file, or until the receiver is gone. An
+/// output may share its connection.
 pub fn spawn(
     name: Arc<str>,
     config: InputConfig,
+    mut shared: SharedEnds,
     tx: mpsc::Sender<Vec<Observation>>,
     stats: Arc<InputStats>,
     shutdown: CancellationToken,
 ) -> JoinHandle<()> {
     let link = Link::new(name, tx, stats);
     tokio::spawn(async move {
-        shutdown.run_until_cancelled(run(&config, &link)).await;
+        shutdown
+            .run_until_cancelled(run(&config, &mut shared, &link))
+            .await;
         link.closed("stopped");
     })
 }
 
-async fn run(config: &InputConfig, link: &Link) {
+async fn run(config: &InputConfig, shared: &mut SharedEnds, link: &Link) {
     let mut backoff = Backoff::default();
     loop {
         let heard_before = link.stats.bytes();
-        let why = match session(config, link).await {
+        let why = match session(config, shared, link).await {
             Ok(End::Finished) => return,
             Ok(End::Closed) => "the other side has closed the connection".to_owned(),
             Err(error) => error.to_string(),
@@ -64,6 +81,7 @@ async fn run(config: &InputConfig, link: &Link) {
             return;
         }
         link.closed(&why);
+        shared.closed().await;
         if link.stats.bytes() > heard_before {
             backoff = Backoff::default();
         }
@@ -71,16 +89,28 @@ async fn run(config: &InputConfig, link: &Link) {
     }
 }
 
-async fn session(config: &InputConfig, link: &Link) -> io::Result<End> {
+impl SharedEnds {
+    async fn closed(&self) {
+        if let Some(end) = &self.bus {
+            end.closed().await;
+        }
+        if let Some(end) = &self.deltas {
+            end.closed().await;
+        }
+    }
+}
+
+async fn session(config: &InputConfig, shared: &mut SharedEnds, link: &Link) -> io::Result<End> {
+    let SharedEnds { bus, deltas } = shared;
     match config {
         InputConfig::Serial(port) => serial::session(port, link).await,
         InputConfig::Tcp(address) => tcp::session(address, link).await,
         InputConfig::Udp(address) => udp::unicast(*address, link).await,
         InputConfig::Multicast(group) => udp::multicast(group, link).await,
-        InputConfig::SignalK(server) => signalk::session(server, link).await,
-        InputConfig::SocketCan(interface) => n2k::socketcan(interface, link).await,
-        InputConfig::Actisense(gateway) => n2k::actisense(gateway, link).await,
-        InputConfig::Ydwg(gateway) => n2k::ydwg(gateway, link).await,
+        InputConfig::SignalK(server) => signalk::session(server, deltas, link).await,
+        InputConfig::SocketCan(interface) => n2k::socketcan(interface, bus, link).await,
+        InputConfig::Actisense(gateway) => n2k::actisense(gateway, bus, link).await,
+        InputConfig::Ydwg(gateway) => n2k::ydwg(gateway, bus, link).await,
         InputConfig::File(path) => file::session(path, link).await,
     }
 }

@@ -1,8 +1,9 @@
-//! Deltas from a Signal K server over a WebSocket.
+//! Deltas from a Signal K server over a WebSocket, and those of an output that shares it.
 
 use super::link::{CONNECT_TIMEOUT, End, Link, connect};
-use super::signalk_access::{Registration, tls};
+use super::signalk_access::{Answer, Permission, Registration, tls};
 use crate::config::SignalKConfig;
+use crate::port::{PortEnd, next_outgoing};
 use binnacle_nmea::Tally;
 use binnacle_observation::signalk::{DeltaCounts, DeltaReader, PATHS};
 use futures_util::{SinkExt, StreamExt};
@@ -12,6 +13,7 @@ use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite};
+use tokio::time::{Instant, sleep_until, timeout};
 use tokio_rustls::TlsConnector;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::tungstenite::http::header::AUTHORIZATION;
@@ -22,6 +24,8 @@ use tokio_tungstenite::{WebSocketStream, client_async_with_config};
 
 /// Silence after which a server is asked whether it wants a token.
 const SILENCE: Duration = Duration::from_millis(if cfg!(test) { 100 } else { 5_000 });
+/// Time within which a server must take a message.
+const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 /// Size limit of a message: deltas are some hundred bytes.
 const MAX_MESSAGE_BYTES: usize = 1024 * 1024;
 
@@ -30,38 +34,54 @@ trait Connection: AsyncRead + AsyncWrite + Unpin + Send {}
 
 impl<T: AsyncRead + AsyncWrite + Unpin + Send> Connection for T {}
 
-pub(crate) async fn session(config: &SignalKConfig, link: &Link) -> io::Result<End> {
+pub(crate) async fn session(
+    config: &SignalKConfig,
+    end: &mut Option<PortEnd<String>>,
+    link: &Link,
+) -> io::Result<End> {
     let mut registration = Registration::load(config);
+    let needed = match end {
+        Some(_) => Permission::ReadWrite,
+        None => Permission::ReadOnly,
+    };
     let token = registration.token(config);
     let mut socket = match open(config, token).await? {
         Opened::Socket(socket) => *socket,
         Opened::Refused => {
-            registration.obtain_token(config, link).await?;
+            registration.obtain_token(config, needed, link).await?;
             return Ok(End::Closed);
         }
     };
-    socket
-        .send(Message::text(subscription()))
-        .await
-        .map_err(io::Error::other)?;
+    send(&mut socket, subscription()).await?;
     link.opened();
+    if let Some(end) = end {
+        end.opened().await;
+    }
     let mut deltas = DeltaReader::new(link.name.clone());
     let mut is_admitted = registration.token(config).is_some();
+    let silent = sleep_until(Instant::now() + SILENCE);
+    tokio::pin!(silent);
+    let permission = obtain_permission(registration.clone(), config, needed);
+    tokio::pin!(permission);
     loop {
-        let next = if is_admitted {
-            socket.next().await
-        } else if let Ok(next) = tokio::time::timeout(SILENCE, socket.next()).await {
-            next
-        } else {
-            // A server with security greets strangers, and sends them nothing.
-            if registration.needs_token(config).await? {
-                registration.obtain_token(config, link).await?;
-                return Ok(End::Closed);
+        let message = tokio::select! {
+            message = socket.next() => message,
+            delta = next_outgoing(end) => {
+                send(&mut socket, delta).await?;
+                continue;
             }
-            is_admitted = true;
-            continue;
+            // A server with security greets strangers, and sends them nothing.
+            () = &mut silent, if !is_admitted => {
+                if registration.needs_token(config).await? {
+                    registration.obtain_token(config, needed, link).await?;
+                    return Ok(End::Closed);
+                }
+                is_admitted = true;
+                continue;
+            }
+            () = &mut permission, if is_admitted => return Ok(End::Closed),
         };
-        let Some(message) = next else {
+        let Some(message) = message else {
             return Ok(End::Closed);
         };
         let message = message.map_err(io::Error::other)?;
@@ -72,12 +92,58 @@ pub(crate) async fn session(config: &SignalKConfig, link: &Link) -> io::Result<E
                 let observations = deltas.read(&text, &mut counts);
                 link.stats.count_values(&counts);
                 is_admitted |= !counts.values.is_empty();
+                if !is_admitted {
+                    silent.as_mut().reset(Instant::now() + SILENCE);
+                }
                 link.deliver(observations).await?;
             }
             Message::Binary(_) => link.stats.reject("bad delta"),
             Message::Close(_) => return Ok(End::Closed),
             Message::Ping(_) | Message::Pong(_) | Message::Frame(_) => {}
         }
+    }
+}
+
+/// Ends when there is a new token with the permission that is needed. While its request waits, the
+/// server is read as before; one without security needs none.
+async fn obtain_permission(
+    mut registration: Registration,
+    config: &SignalKConfig,
+    needed: Permission,
+) {
+    if registration.has_token_for(config, needed) || needed == Permission::ReadOnly {
+        return std::future::pending().await;
+    }
+    let waiting = || {
+        tracing::warn!(
+            url = %config.url.uri(),
+            "the Signal K server takes no deltas before it is approved: accept \"Binnacle compass \
+             agent\" on its page, Security, Access Requests"
+        );
+    };
+    match registration.request_token(config, needed, waiting).await {
+        Ok(Answer::Approved) => return,
+        Ok(Answer::NotTaken(StatusCode::NOT_FOUND)) => {}
+        Ok(Answer::NotTaken(status)) => {
+            tracing::warn!(%status, "the Signal K server takes no access request");
+        }
+        Ok(Answer::Denied) => {
+            tracing::warn!("the Signal K server's administrator denied sending deltas");
+        }
+        Err(error) => tracing::warn!(%error, "the Signal K server cannot be asked for access"),
+    }
+    // The next connection asks again.
+    std::future::pending::<()>().await;
+}
+
+/// Sends a message, which the server must take in time: an older heading is not for steering.
+async fn send(socket: &mut WebSocketStream<Box<dyn Connection>>, text: String) -> io::Result<()> {
+    match timeout(WRITE_TIMEOUT, socket.send(Message::text(text))).await {
+        Ok(sent) => sent.map_err(io::Error::other),
+        Err(_) => Err(io::Error::new(
+            io::ErrorKind::TimedOut,
+            "the server takes no deltas",
+        )),
     }
 }
 
@@ -110,7 +176,7 @@ async fn open(config: &SignalKConfig, token: Option<&str>) -> io::Result<Opened>
         .max_message_size(Some(MAX_MESSAGE_BYTES))
         .max_frame_size(Some(MAX_MESSAGE_BYTES));
     let handshake = client_async_with_config(request, stream, Some(limits));
-    let opened = tokio::time::timeout(CONNECT_TIMEOUT, handshake)
+    let opened = timeout(CONNECT_TIMEOUT, handshake)
         .await
         .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "the handshake timed out"))?;
     match opened {

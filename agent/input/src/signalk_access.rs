@@ -2,7 +2,8 @@
 //! requests"), and the TLS of its connections.
 //!
 //! A server that asks for a token is sent one request; its administrator accepts it on the
-//! server's page. Request and token are kept over restarts.
+//! server's page. Request and token are kept over restarts. An output that shares the connection
+//! needs a token that may write.
 
 use super::link::{CONNECT_TIMEOUT, Link};
 use crate::config::SignalKConfig;
@@ -29,6 +30,28 @@ const DENIED: Duration = Duration::from_mins(10);
 /// Name of the agent on the server's page.
 const DESCRIPTION: &str = "Binnacle compass agent";
 
+/// Permission that a token gives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Permission {
+    /// To read.
+    #[default]
+    ReadOnly,
+    /// To read and to send deltas.
+    ReadWrite,
+}
+
+/// Decision on a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// There is a token.
+    Approved,
+    /// The server's administrator refused it.
+    Denied,
+    /// The server takes no requests: it has no security, or does not allow them.
+    NotTaken(StatusCode),
+}
+
 /// Registration at the server.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Registration {
@@ -38,6 +61,12 @@ pub(crate) struct Registration {
     request: Option<String>,
     #[serde(default)]
     token: Option<String>,
+    /// Permission of the token.
+    #[serde(default)]
+    permission: Permission,
+    /// Permission of the request.
+    #[serde(default)]
+    requested: Permission,
 }
 
 /// State of a request, as the server has it.
@@ -67,6 +96,8 @@ impl Registration {
             client_id: Uuid::new_v4(),
             request: None,
             token: None,
+            permission: Permission::default(),
+            requested: Permission::default(),
         })
     }
 
@@ -96,23 +127,65 @@ impl Registration {
         ))
     }
 
+    /// Returns whether the token may do what is needed; one of the configuration is believed.
+    pub(crate) fn has_token_for(&self, config: &SignalKConfig, needed: Permission) -> bool {
+        config.token.is_some() || (self.token.is_some() && self.permission >= needed)
+    }
+
     /// Asks for a token and waits until the server's administrator has decided.
     pub(crate) async fn obtain_token(
         &mut self,
         config: &SignalKConfig,
+        needed: Permission,
         link: &Link,
     ) -> io::Result<()> {
         if config.token.is_some() {
             return Err(io::Error::other("the server refuses the token"));
         }
+        // The server has just refused it.
         self.token = None;
-        self.store(config)?;
+        let waiting = || {
+            link.closed(
+                "the server wants approval: accept \"Binnacle compass agent\" on its page, \
+                 Security, Access Requests",
+            );
+        };
+        match self.request_token(config, needed, waiting).await? {
+            Answer::Approved => Ok(()),
+            Answer::Denied => {
+                link.closed("the server's administrator denied access");
+                tokio::time::sleep(DENIED).await;
+                Ok(())
+            }
+            Answer::NotTaken(status) => Err(io::Error::other(format!(
+                "the server wants a token, but takes no access request ({status})"
+            ))),
+        }
+    }
+
+    /// Sends a request, unless one waits already, and waits for the decision. `waiting` is called
+    /// if there is none yet.
+    pub(crate) async fn request_token(
+        &mut self,
+        config: &SignalKConfig,
+        needed: Permission,
+        waiting: impl Fn(),
+    ) -> io::Result<Answer> {
         let http = client(config)?;
-        if self.request.is_none() {
-            self.request = Some(self.send_request(config, &http).await?);
+        if self.request.is_none() || self.requested < needed {
+            if self.request.is_some() {
+                // The server takes one request of a client at a time.
+                self.client_id = Uuid::new_v4();
+            }
+            match self.send_request(config, needed, &http).await? {
+                Ok(href) => self.request = Some(href),
+                Err(status) => return Ok(Answer::NotTaken(status)),
+            }
+            self.requested = needed;
             self.store(config)?;
         }
         let address = config.url.rest(self.request.as_deref().unwrap_or_default());
+        let mut is_first = true;
         loop {
             let response = http.get(&address).send().await.map_err(io::Error::other)?;
             if response.status() == StatusCode::NOT_FOUND {
@@ -126,10 +199,9 @@ impl Registration {
             let found: RequestState = response.json().await.map_err(io::Error::other)?;
             match found.decision.filter(|_| found.state == "COMPLETED") {
                 None => {
-                    link.closed(
-                        "the server wants approval: accept \"Binnacle compass agent\" on its page, \
-                         Security, Access Requests",
-                    );
+                    if std::mem::take(&mut is_first) {
+                        waiting();
+                    }
                     tokio::time::sleep(POLL).await;
                 }
                 Some(Decision {
@@ -137,37 +209,39 @@ impl Registration {
                     token: Some(token),
                 }) if permission == "APPROVED" => {
                     self.token = Some(token);
+                    self.permission = self.requested;
                     self.request = None;
-                    return self.store(config);
+                    self.store(config)?;
+                    return Ok(Answer::Approved);
                 }
                 Some(_) => {
-                    link.closed("the server's administrator denied access");
-                    tokio::time::sleep(DENIED).await;
                     self.request = None;
-                    return self.store(config);
+                    self.store(config)?;
+                    return Ok(Answer::Denied);
                 }
             }
         }
     }
 
+    /// Returns where the request's state is found, or the status with which it was not taken.
     async fn send_request(
         &self,
         config: &SignalKConfig,
+        needed: Permission,
         http: &reqwest::Client,
-    ) -> io::Result<String> {
+    ) -> io::Result<Result<String, StatusCode>> {
         let request = json!({
-            "clientId": self.client_id, "description": DESCRIPTION, "permissions": "readonly",
+            "clientId": self.client_id, "description": DESCRIPTION, "permissions": needed,
         });
         let sent = http.post(config.url.rest(REQUESTS)).json(&request).send();
         let response = sent.await.map_err(io::Error::other)?;
         let status = response.status();
+        if !status.is_success() {
+            return Ok(Err(status));
+        }
         let state: Result<RequestState, _> = response.json().await;
         let href = state.ok().and_then(|state| state.href);
-        href.filter(|href| href.starts_with('/')).ok_or_else(|| {
-            io::Error::other(format!(
-                "the server wants a token, but takes no access request ({status})"
-            ))
-        })
+        Ok(href.filter(|href| href.starts_with('/')).ok_or(status))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Inputs over real sockets, a real pseudo-terminal and real files.
 
-use super::{InputStats, spawn};
+use super::{InputStats, Port, PortEvent, SharedEnds, spawn};
 use crate::config::InputConfig;
 use binnacle_observation::{Observation, Reading, is_recorded_time};
 use futures_util::{SinkExt, StreamExt};
@@ -37,10 +37,21 @@ impl Input {
     }
 
     fn of(config: InputConfig, room: usize) -> Input {
+        Input::shared(config, SharedEnds::default(), room)
+    }
+
+    fn shared(config: InputConfig, ends: SharedEnds, room: usize) -> Input {
         let (tx, observations) = mpsc::channel(room);
         let stats = Arc::new(InputStats::default());
         let shutdown = CancellationToken::new();
-        let task = spawn("bridge".into(), config, tx, stats.clone(), shutdown.clone());
+        let task = spawn(
+            "bridge".into(),
+            config,
+            ends,
+            tx,
+            stats.clone(),
+            shutdown.clone(),
+        );
         Input {
             observations,
             stats,
@@ -303,7 +314,7 @@ async fn a_signal_k_server_with_security_is_asked_for_access_once() {
     let mut input = Input::of(config.clone(), 8);
     let (mut requests, mut strangers) = (Vec::new(), Vec::new());
     let admitted = loop {
-        let (mut stream, _) = listener.accept().await.unwrap();
+        let (stream, _) = listener.accept().await.unwrap();
         let (line, has_token) = peek_request(&stream).await;
         requests.push(line.clone());
         let (status, body) = match line.as_str() {
@@ -327,16 +338,7 @@ async fn a_signal_k_server_with_security_is_asked_for_access_once() {
             }
             _ => ("401 Unauthorized", ""),
         };
-        let response = format!(
-            "HTTP/1.1 {status}\r\ncontent-type: application/json\r\ncontent-length: {}\r\n\
-             connection: close\r\n\r\n{body}",
-            body.len()
-        );
-        stream.write_all(response.as_bytes()).await.unwrap();
-        // What the client still sends is read, so that the response is not lost with a reset.
-        tokio::io::copy(&mut stream, &mut tokio::io::sink())
-            .await
-            .ok();
+        respond(stream, status, body).await;
     };
     let posts = requests.iter().filter(|line| line.starts_with("POST"));
     assert_eq!(posts.count(), 1, "{requests:?}");
@@ -347,6 +349,62 @@ async fn a_signal_k_server_with_security_is_asked_for_access_once() {
     input = Input::of(config, 8);
     let (stream, _) = listener.accept().await.unwrap();
     assert!(peek_request(&stream).await.1);
+    input.stop().await;
+}
+
+/// Serves one request of a Signal K server with security.
+async fn respond(mut stream: tokio::net::TcpStream, status: &str, body: &str) {
+    let response = format!(
+        "HTTP/1.1 {status}\r\ncontent-type: application/json\r\ncontent-length: {}\r\n\
+         connection: close\r\n\r\n{body}",
+        body.len()
+    );
+    stream.write_all(response.as_bytes()).await.unwrap();
+    // What the client still sends is read, so that the response is not lost with a reset.
+    tokio::io::copy(&mut stream, &mut tokio::io::sink())
+        .await
+        .ok();
+}
+
+#[tokio::test]
+async fn a_server_is_read_while_the_right_to_send_to_it_is_asked_for() {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let address = listener.local_addr().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let registration = r#"{"client_id":"00000000-0000-0000-0000-000000000007","token":"old"}"#;
+    std::fs::write(folder.path().join("signalk-sk.json"), registration).unwrap();
+    let url = format!("signalk = \"ws://{address}/signalk/v1/stream\"");
+    let mut config: InputConfig = toml::from_str(&url).unwrap();
+    config.resolve(folder.path(), folder.path(), "sk");
+    let (mut port, end) = Port::new();
+    let ends = SharedEnds {
+        deltas: Some(end),
+        ..SharedEnds::default()
+    };
+    let mut input = Input::shared(config, ends, 8);
+    let (stream, _) = listener.accept().await.unwrap();
+    let mut server = accept_async(stream).await.unwrap();
+    let (stream, _) = listener.accept().await.unwrap();
+    assert!(peek_request(&stream).await.0.starts_with("POST"));
+    let delta = r#"{"context":"vessels.self","updates":[{"$source":"n2k.204","values":[
+        {"path":"navigation.headingCompass","value":1.0}]}]}"#;
+    server.send(Message::text(delta)).await.unwrap();
+    assert_eq!(&input.next().await[0].source.sentence, b"HDG");
+    let body = r#"{"state":"PENDING","requestId":"7","href":"/signalk/v1/requests/7"}"#;
+    respond(stream, "202 Accepted", body).await;
+    let (stream, _) = listener.accept().await.unwrap();
+    let body = r#"{"state":"COMPLETED","statusCode":200,
+        "accessRequest":{"permission":"APPROVED","token":"the-token"}}"#;
+    respond(stream, "200 OK", body).await;
+    let (stream, _) = listener.accept().await.unwrap();
+    assert!(peek_request(&stream).await.1);
+    let mut server = accept_async(stream).await.unwrap();
+    assert!(server.next().await.unwrap().unwrap().is_text());
+    while port.events.recv().await != Some(PortEvent::Closed) {}
+    assert_eq!(port.events.recv().await, Some(PortEvent::Opened));
+    assert!(port.send("a delta".to_owned()));
+    let sent = server.next().await.unwrap().unwrap();
+    assert_eq!(sent.into_text().unwrap().as_str(), "a delta");
     input.stop().await;
 }
 

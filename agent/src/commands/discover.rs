@@ -3,7 +3,7 @@
 use crate::acquisition::Acquisition;
 use crate::config::Config;
 use crate::discovery::Discovery;
-use binnacle_input::{InputConfig, InputStats};
+use binnacle_input::{InputConfig, InputStats, SharedEnds};
 use binnacle_wire::messages::Settings;
 use std::io::Write;
 use std::sync::Arc;
@@ -28,7 +28,15 @@ pub(super) async fn discover(config: Config, listen: Duration, json: bool) -> an
     for (name, input) in config.inputs {
         let stats = Arc::new(InputStats::default());
         inputs.push((name.clone(), Arc::clone(&stats)));
-        binnacle_input::spawn(name.into(), input, tx.clone(), stats, shutdown.clone());
+        let shared = SharedEnds::default();
+        binnacle_input::spawn(
+            name.into(),
+            input,
+            shared,
+            tx.clone(),
+            stats,
+            shutdown.clone(),
+        );
     }
     // Recordings end; other inputs do not.
     drop(tx);

@@ -13,7 +13,7 @@ use crate::spool::Spool;
 use crate::status::{Status, status_socket};
 use crate::uplink;
 use anyhow::Context;
-use binnacle_input::{InputConfig, InputStats};
+use binnacle_input::{InputConfig, InputStats, SharedEnds};
 use binnacle_output::{AlertSentences, HeadingSentences, Outputs};
 use std::sync::Arc;
 use tokio::sync::{mpsc, watch};
@@ -80,7 +80,9 @@ impl Agent {
         for (name, input) in config.inputs {
             let stats = Arc::new(InputStats::default());
             inputs.push((name.clone(), stats.clone()));
-            binnacle_input::spawn(name.into(), input, tx.clone(), stats, shutdown.clone());
+            let shared = SharedEnds::default();
+            let (tx, shutdown) = (tx.clone(), shutdown.clone());
+            binnacle_input::spawn(name.into(), input, shared, tx, stats, shutdown);
         }
         let page = page.map(|address| address.to_string());
         let output = outputs.tcp_address.map(|address| address.to_string());

@@ -58,6 +58,32 @@ impl InputConfig {
     }
 }
 
+/// Owner of the address that messages of an output have on an NMEA 2000 bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AddressOwner {
+    /// The agent claims it.
+    Agent,
+    /// The gateway has claimed it, and puts it into each message.
+    Gateway,
+}
+
+impl InputConfig {
+    /// Returns whose address the messages of an NMEA 2000 output have.
+    ///
+    /// # Errors
+    /// Fails with the reason when such an output cannot share this input.
+    pub fn n2k_address_owner(&self) -> Result<AddressOwner, String> {
+        match self {
+            InputConfig::Actisense(_) => Ok(AddressOwner::Gateway),
+            InputConfig::Ydwg(YdwgConfig::Udp { send_to: None, .. }) => Err(
+                "a gateway's datagrams are only received: set send_to to its address".to_owned(),
+            ),
+            InputConfig::SocketCan(_) | InputConfig::Ydwg(_) => Ok(AddressOwner::Agent),
+            _ => Err(format!("{} carries no NMEA 2000", self.kind())),
+        }
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct InputTable {

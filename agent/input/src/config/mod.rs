@@ -6,7 +6,6 @@ mod n2k_input;
 mod signalk;
 
 pub use host_port::HostPort;
-pub use input::InputConfig;
-pub use input::{Group, SerialConfig};
+pub use input::{AddressOwner, Group, InputConfig, SerialConfig};
 pub use n2k_input::{ActisenseConfig, YdwgConfig};
 pub use signalk::SignalKConfig;

@@ -52,8 +52,13 @@ impl TryFrom<ActisenseTable> for ActisenseConfig {
 pub enum YdwgConfig {
     /// Connects to the gateway.
     Tcp(HostPort),
-    /// Receives its datagrams at this address.
-    Udp(SocketAddr),
+    /// Receives its datagrams.
+    Udp {
+        /// Address to receive at.
+        address: SocketAddr,
+        /// Address of the gateway, for an output that shares the input.
+        send_to: Option<SocketAddr>,
+    },
 }
 
 #[derive(Deserialize)]
@@ -61,15 +66,17 @@ pub enum YdwgConfig {
 struct YdwgTable {
     tcp: Option<HostPort>,
     udp: Option<SocketAddr>,
+    send_to: Option<SocketAddr>,
 }
 
 impl TryFrom<YdwgTable> for YdwgConfig {
     type Error = String;
 
     fn try_from(table: YdwgTable) -> Result<YdwgConfig, String> {
-        match (table.tcp, table.udp) {
-            (Some(address), None) => Ok(YdwgConfig::Tcp(address)),
-            (None, Some(address)) => Ok(YdwgConfig::Udp(address)),
+        match (table.tcp, table.udp, table.send_to) {
+            (Some(address), None, None) => Ok(YdwgConfig::Tcp(address)),
+            (None, Some(address), send_to) => Ok(YdwgConfig::Udp { address, send_to }),
+            (Some(_), None, Some(_)) => Err("send_to is of udp, not of tcp".to_owned()),
             _ => Err("a gateway of Yacht Devices has exactly one of tcp and udp".to_owned()),
         }
     }
@@ -98,5 +105,8 @@ mod tests {
         }
         let ydwg = |text: &str| toml::from_str::<YdwgConfig>(text);
         assert!(ydwg("udp = \"0.0.0.0:1457\"").is_ok() && ydwg("").is_err());
+        let send_to = "send_to = \"10.0.0.5:1457\"";
+        assert!(ydwg(&format!("udp = \"0.0.0.0:1457\"\n{send_to}")).is_ok());
+        assert!(ydwg(&format!("tcp = \"10.0.0.5:1457\"\n{send_to}")).is_err());
     }
 }
