@@ -3,7 +3,7 @@
 
 use crate::config::{RolesConfig, SilenceConfig};
 use crate::instruments::{
-    AGENT_TALKER, ClockCheckpoint, GnssGuard, HeardSources, Independence, Interference, OwnOutput,
+    ClockCheckpoint, GnssGuard, HeardSources, Independence, Interference, OwnHeadings, OwnOutput,
     Readings, ReckonedPlace, Roles, SentHeading, SourceReport, StatedClocks,
 };
 use crate::sampler::{Exclusion, Sampler};
@@ -47,7 +47,7 @@ impl Acquisition {
         Acquisition {
             roles: Roles::new(roles, silence),
             clocks: StatedClocks::default(),
-            own_output: OwnOutput::new(vec![AGENT_TALKER]),
+            own_output: OwnOutput::new(OwnHeadings::default()),
             independence: Independence::default(),
             guard: GnssGuard::default(),
             heard: HeardSources::default(),
@@ -94,11 +94,10 @@ impl Acquisition {
         self.is_recorded = true;
     }
 
-    /// Sets the headings that the agent sends, by talker and sentence.
-    pub(crate) fn set_own_headings(&mut self, headings: &[([u8; 2], [u8; 3])]) {
-        let talkers = headings.iter().map(|(talker, _)| *talker).collect();
-        self.own_output = OwnOutput::new(talkers);
-        self.roles.add_own_headings(headings);
+    /// Sets the headings that the agent sends.
+    pub(crate) fn set_own_headings(&mut self, headings: OwnHeadings) {
+        self.roles.add_own_headings(&headings.sentences);
+        self.own_output = OwnOutput::new(headings);
     }
 
     /// Records a heading as it is sent to the bridge.

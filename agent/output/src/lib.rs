@@ -1,5 +1,6 @@
 //! Output to the bridge: the corrected heading and the alerts as NMEA 0183 sentences, over TCP, UDP,
-//! IEC 61162-450 and serial ports.
+//! IEC 61162-450 and serial ports, and the heading on NMEA 2000 and to Signal K, over the
+//! connections of inputs.
 //!
 //! Invariants:
 //!
@@ -11,6 +12,7 @@ pub mod config;
 
 mod framing;
 mod line;
+mod schedule;
 
 mod heading_sentences;
 
@@ -25,10 +27,17 @@ mod outputs;
 mod serial_line;
 mod tcp_clients;
 
+mod n2k;
+mod shared_outputs;
+mod signalk;
+
 pub use alert_sentences::{AlertConditions, AlertSentences};
 pub use condition::AlertCondition;
 pub use framing::frame_sentence;
-pub use heading_sentences::{Heading, HeadingSentences, Quality, Trigger};
+pub use heading_sentences::{Heading, HeadingSentences, Quality};
 pub use line::Line;
+pub use n2k::OwnDevice;
 pub use open_error::OpenError;
 pub use outputs::Outputs;
+pub use schedule::Trigger;
+pub use shared_outputs::SharedOutputs;

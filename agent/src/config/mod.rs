@@ -31,7 +31,7 @@ use error::Problem;
 use limits::PositiveSeconds;
 use limits::{RawLogLimit, SpoolLimit};
 use serde::Deserialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -120,11 +120,40 @@ fn parse(text: &str) -> Result<Config, Problem> {
         }
     }
     config.uplink.check(config.modem.as_ref())?;
+    check_shared_inputs(&config)?;
     config.output.check().map_err(|wrong| Problem {
         span: Some(wrong.span),
         problem: wrong.problem,
     })?;
     Ok(config)
+}
+
+/// Refuses outputs over an input that cannot carry them, and two over one.
+fn check_shared_inputs(config: &Config) -> Result<(), Problem> {
+    let buses = config.output.n2k.iter().map(|bus| &bus.input);
+    let servers = config.output.signalk.iter().map(|server| &server.input);
+    let mut shared = BTreeSet::new();
+    for (input, is_bus) in buses
+        .map(|input| (input, true))
+        .chain(servers.map(|input| (input, false)))
+    {
+        let name = input.get_ref();
+        let wrong = |problem: String| Problem {
+            span: Some(input.span()),
+            problem,
+        };
+        let found = config.inputs.get(name);
+        let found = found.ok_or_else(|| wrong(format!("there is no input named {name:?}")))?;
+        if is_bus {
+            found.n2k_address_owner().map_err(wrong)?;
+        } else if !matches!(found, InputConfig::SignalK(_)) {
+            return Err(wrong(format!("{} is no Signal K server", found.kind())));
+        }
+        if !shared.insert(name) {
+            return Err(wrong(format!("two outputs share the input {name:?}")));
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -252,6 +281,48 @@ stale_s = 15
             wrong.starts_with("agent.toml:15: path: 4800 baud carry"),
             "{wrong}"
         );
+    }
+
+    #[test]
+    fn an_output_over_an_input_that_cannot_carry_it_is_refused_where_it_is_written() {
+        let with = |inputs: &str, output: &str| {
+            let inputs = format!("[inputs.bus]\n{inputs}\n[inputs.bridge]");
+            let text = WHOLE.replace("[inputs.bridge]", &inputs);
+            text.replace("interval_s = 1", output)
+        };
+        let can = "socketcan = \"can0\"";
+        assert!(parse(&with(can, "n2k = { input = \"bus\" }")).is_ok());
+        let udp = "ydwg = { udp = \"0.0.0.0:1457\" }";
+        for (input, output, problem) in [
+            (
+                can,
+                "n2k = { input = \"b\" }",
+                "there is no input named \"b\"",
+            ),
+            (
+                can,
+                "n2k = { input = \"bridge\" }",
+                "tcp carries no NMEA 2000",
+            ),
+            (
+                udp,
+                "n2k = { input = \"bus\" }",
+                "a gateway's datagrams are only received: set send_to to its address",
+            ),
+            (
+                can,
+                "signalk = { input = \"bus\" }",
+                "socketcan is no Signal K server",
+            ),
+            (
+                can,
+                "n2k = [{ input = \"bus\" }, { input = \"bus\" }]",
+                "two outputs share the input \"bus\"",
+            ),
+        ] {
+            let wrong = message(&with(input, output));
+            assert_eq!(wrong, format!("agent.toml:16: input: {problem}"));
+        }
     }
 
     #[test]

@@ -17,7 +17,7 @@ pub(crate) use clock_checkpoint::ClockCheckpoint;
 pub(crate) use gnss_guard::{GnssGuard, Interference, ReckonedPlace, offset};
 pub(crate) use heard::{HeardSource, HeardSources, SourceReport};
 pub(crate) use independence::Independence;
-pub(crate) use own_output::{AGENT_TALKER, OwnOutput, SentHeading};
+pub(crate) use own_output::{AGENT_TALKER, OwnHeadings, OwnOutput, SentHeading};
 pub(crate) use readings::{Latest, Readings};
 #[cfg(test)]
 pub(crate) use roles::ReferenceHeading;

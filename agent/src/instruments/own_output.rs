@@ -1,12 +1,15 @@
 //! The agent's own headings, heard again: over a shared line, or from a server that they were sent
 //! to.
 //!
+//! On an NMEA 2000 bus it is known by its NAME and its address, at a Signal K server by its `$source`.
+//!
 //! Its own HDG is known by its content: the raw reading together with the deviation of the model
 //! and the variation of the field. A compass comes before what the agent makes of it. A source
 //! whose changes have all been sent shortly before is therefore the agent's own.
 
 use binnacle_compass::angle::{CompassHeading, Deviation, Variation, wrap_180};
 use binnacle_observation::{Observation, Reading, Source};
+use binnacle_output::OwnDevice;
 use std::collections::{HashMap, VecDeque};
 use std::time::Duration;
 use tokio::time::Instant;
@@ -45,10 +48,54 @@ impl SentHeading {
     }
 }
 
+/// Headings that the agent sends, by what their receivers know them by.
+#[derive(Debug)]
+pub(crate) struct OwnHeadings {
+    /// Talker and sentence.
+    pub(crate) sentences: Vec<([u8; 2], [u8; 3])>,
+    /// Devices on NMEA 2000 that the agent itself is.
+    pub(crate) devices: Vec<OwnDevice>,
+    /// Signal K: `$source`.
+    pub(crate) labels: Vec<String>,
+}
+
+impl Default for OwnHeadings {
+    fn default() -> OwnHeadings {
+        OwnHeadings {
+            sentences: vec![(AGENT_TALKER, *b"HDG")],
+            devices: Vec::new(),
+            labels: Vec::new(),
+        }
+    }
+}
+
+impl OwnHeadings {
+    /// Returns whether a source is one under which the agent itself sends.
+    fn names(&self, source: &Source) -> bool {
+        let signalk = source.signalk.as_deref();
+        let is_label = signalk.is_some_and(|own| self.labels.iter().any(|label| label == own));
+        is_label || self.devices.iter().any(|device| is_own(device, source))
+    }
+
+    fn has_talker(&self, talker: [u8; 2]) -> bool {
+        self.sentences.iter().any(|(own, _)| *own == talker)
+    }
+}
+
+/// Returns whether a source is a device that the agent itself is. An address says so on the device's
+/// own bus alone; a server that reads buses is taken to read that one.
+fn is_own(device: &OwnDevice, source: &Source) -> bool {
+    if let Some(name) = source.n2k_name {
+        return name == device.name;
+    }
+    let is_same_bus = *source.input == *device.input || source.signalk.is_some();
+    is_same_bus && source.n2k_address.is_some() && source.n2k_address == *device.address.borrow()
+}
+
 /// Headings that the agent has sent, and the sources that repeat them.
 #[derive(Debug)]
 pub(crate) struct OwnOutput {
-    talkers: Vec<[u8; 2]>,
+    own: OwnHeadings,
     sent: VecDeque<(Instant, SentHeading)>,
     repeats: HashMap<Source, Repeats>,
 }
@@ -61,10 +108,10 @@ struct Repeats {
 }
 
 impl OwnOutput {
-    /// Creates the memory of an output with these talkers.
-    pub(crate) fn new(talkers: Vec<[u8; 2]>) -> OwnOutput {
+    /// Creates the memory of an output.
+    pub(crate) fn new(own: OwnHeadings) -> OwnOutput {
         OwnOutput {
-            talkers,
+            own,
             sent: VecDeque::new(),
             repeats: HashMap::new(),
         }
@@ -80,6 +127,9 @@ impl OwnOutput {
 
     /// Returns whether an observation is the agent's own output.
     pub(crate) fn is_echo(&mut self, seen: &Observation, now: Instant) -> bool {
+        if self.own.names(&seen.source) {
+            return true;
+        }
         let Some(heading) = whole_heading(&seen.reading) else {
             return self.is_repeater(&seen.source);
         };
@@ -92,7 +142,7 @@ impl OwnOutput {
         }
         let was_sent = self.sent.iter().any(|(_, sent)| sent.is_same(&heading));
         self.note_repeat(&seen.source, heading, was_sent);
-        (was_sent && self.talkers.contains(&seen.source.talker)) || self.is_repeater(&seen.source)
+        (was_sent && self.own.has_talker(seen.source.talker)) || self.is_repeater(&seen.source)
     }
 
     /// Returns the sources that repeat the output.
@@ -154,6 +204,7 @@ fn whole_heading(reading: &Reading) -> Option<SentHeading> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use binnacle_nmea::n2k::{Address, Name};
 
     fn heading(raw: f64) -> SentHeading {
         SentHeading {
@@ -179,7 +230,7 @@ mod tests {
     #[test]
     fn the_agents_own_sentence_is_known_at_once_and_for_two_seconds() {
         let start = Instant::now();
-        let mut own = OwnOutput::new(vec![*b"II"]);
+        let mut own = OwnOutput::new(OwnHeadings::default());
         own.note_sent(heading(100.0), start);
         let soon = start + Duration::from_millis(1_900);
         assert!(own.is_echo(&seen(*b"II", None, heading(100.04)), soon));
@@ -190,9 +241,48 @@ mod tests {
     }
 
     #[test]
+    fn the_agents_own_device_and_label_are_known_in_all_that_they_send() {
+        let (address, own_address) = tokio::sync::watch::channel(Address::new(35));
+        let name = Name::parse("c0788c00ffc0002a").unwrap();
+        let mut own = OwnOutput::new(OwnHeadings {
+            devices: vec![OwnDevice {
+                input: "bus".to_owned(),
+                name,
+                address: own_address,
+            }],
+            labels: vec!["binnacle".to_owned()],
+            ..OwnHeadings::default()
+        });
+        let mut is_echo = |input: &str, signalk: Option<&str>, n2k: (Option<u8>, Option<Name>)| {
+            let source = Source {
+                signalk: signalk.map(Into::into),
+                n2k_address: n2k.0.and_then(Address::new),
+                n2k_name: n2k.1,
+                ..Source::of_sentence(input.into(), *b"N2", *b"HDT")
+            };
+            own.is_echo(
+                &Observation::now(source, Reading::TrueNotValid),
+                Instant::now(),
+            )
+        };
+        let other = Name::parse("c0788c00e7e04312");
+        assert!(is_echo("bus", None, (Some(35), None)));
+        assert!(is_echo("gateway", None, (Some(77), Some(name))));
+        assert!(is_echo("server", Some("can0.35"), (Some(35), None)));
+        assert!(is_echo("server", Some("binnacle"), (None, None)));
+        assert!(!is_echo("bus", None, (Some(36), None)));
+        assert!(!is_echo("bus", None, (Some(35), other)));
+        assert!(!is_echo("second bus", None, (Some(35), None)));
+        assert!(!is_echo("server", Some("binnacle.HC"), (None, None)));
+        address.send_replace(None);
+        assert!(!is_echo("bus", None, (Some(35), None)));
+        assert!(!is_echo("bus", None, (None, None)));
+    }
+
+    #[test]
     fn a_source_that_follows_each_change_is_an_echo_in_all_its_sentences() {
         let start = Instant::now();
-        let mut own = OwnOutput::new(vec![*b"II"]);
+        let mut own = OwnOutput::new(OwnHeadings::default());
         let mut echoes = Vec::new();
         for second in 0..20_u8 {
             let now = start + Duration::from_secs(second.into());

@@ -64,7 +64,10 @@ impl Agent {
     /// Returns the time at which a heading is sent unless a reading causes it before.
     pub(super) fn next_output(&self) -> Instant {
         let interval = self.acquisition.readings.compass_interval();
-        self.sentences.next_timer(interval, Instant::now())
+        let now = Instant::now();
+        let sentences = self.sentences.next_timer(interval, now);
+        let shared = self.shared_outputs.next_timer(interval, now);
+        shared.map_or(sentences, |shared| shared.min(sentences))
     }
 
     /// Sends the heading without a new reading; those that wait are taken first.
@@ -99,9 +102,11 @@ impl Agent {
             age_days: model.age_days.unwrap_or_default(),
         });
         let interval = self.acquisition.readings.compass_interval();
-        let mut lines =
-            self.sentences
-                .due(&output_heading(&corrected), quality, trigger, interval, now);
+        let heading = output_heading(&corrected);
+        self.shared_outputs.send(&heading, trigger, interval, now);
+        let mut lines = self
+            .sentences
+            .due(&heading, quality, trigger, interval, now);
         if let Some(sent) = sent_heading(&corrected).filter(|_| !lines.is_empty()) {
             self.acquisition.note_sent(sent, now);
         }

@@ -28,7 +28,7 @@ use binnacle_compass::time::Timestamp;
 use binnacle_input::InputStats;
 use binnacle_nmea::sentence::Acn;
 use binnacle_observation::Observation;
-use binnacle_output::{AlertSentences, HeadingSentences, Outputs};
+use binnacle_output::{AlertSentences, HeadingSentences, Outputs, SharedOutputs};
 use binnacle_wire::alert::ShipAlert;
 use service_manager::ServiceManager;
 use std::sync::Arc;
@@ -72,6 +72,7 @@ struct Agent {
     /// Commands that the outputs' receivers send.
     alert_commands: mpsc::Receiver<Acn>,
     sentences: HeadingSentences,
+    shared_outputs: SharedOutputs,
     exclusion: watch::Sender<Option<Exclusion>>,
     alert_monitor: AlertMonitor,
     difference_monitor: DifferenceMonitor,

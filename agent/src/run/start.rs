@@ -5,6 +5,7 @@ use crate::acquisition::Acquisition;
 use crate::alert::{AlarmSentence, AlertMonitor, DifferenceMonitor};
 use crate::clock;
 use crate::config::Config;
+use crate::instruments::OwnHeadings;
 use crate::page::{self, PageState, PinGuard};
 use crate::raw_log::RawLog;
 use crate::sampler::Tally;
@@ -13,8 +14,10 @@ use crate::spool::Spool;
 use crate::status::{Status, status_socket};
 use crate::uplink;
 use anyhow::Context;
+use binnacle_input::config::AddressOwner;
 use binnacle_input::{InputConfig, InputStats, SharedEnds};
-use binnacle_output::{AlertSentences, HeadingSentences, Outputs};
+use binnacle_output::{AlertSentences, HeadingSentences, Outputs, SharedOutputs};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;
@@ -35,7 +38,12 @@ impl Agent {
         let last_contact = uplink_handle.link.borrow().last_contact;
         let (roles, silence) = (&config.roles, &config.silence);
         let mut acquisition = Acquisition::new(roles, silence, settings, exclusion);
-        acquisition.set_own_headings(&config.output.headings());
+        let (shared_outputs, mut shared_ends) = start_shared_outputs(&config, shutdown);
+        acquisition.set_own_headings(OwnHeadings {
+            sentences: config.output.headings(),
+            devices: shared_outputs.own_devices(),
+            labels: shared_outputs.own_labels(),
+        });
         let is_recorded = |input: &InputConfig| matches!(input, InputConfig::File(_));
         if !config.inputs.values().any(is_recorded) {
             // The computer may have lost its time with its power.
@@ -80,7 +88,7 @@ impl Agent {
         for (name, input) in config.inputs {
             let stats = Arc::new(InputStats::default());
             inputs.push((name.clone(), stats.clone()));
-            let shared = SharedEnds::default();
+            let shared = shared_ends.remove(&name).unwrap_or_default();
             let (tx, shutdown) = (tx.clone(), shutdown.clone());
             binnacle_input::spawn(name.into(), input, shared, tx, stats, shutdown);
         }
@@ -102,6 +110,7 @@ impl Agent {
             outputs,
             alert_commands,
             sentences: HeadingSentences::new(&config.output),
+            shared_outputs,
             exclusion,
             difference_monitor: DifferenceMonitor::new(&config.alert),
             alert_monitor: AlertMonitor::new(config.alert, stored_alert, judged_by),
@@ -122,4 +131,18 @@ impl Agent {
             source_problems: Vec::new(),
         })
     }
+}
+
+/// Starts the outputs over inputs' connections. Returns also the ends for the inputs, by name.
+fn start_shared_outputs(
+    config: &Config,
+    shutdown: &CancellationToken,
+) -> (SharedOutputs, BTreeMap<String, SharedEnds>) {
+    let owner = |input: &str| {
+        let input = config.inputs.get(input);
+        let owner = input.and_then(|input| input.n2k_address_owner().ok());
+        // The configuration was checked for it.
+        owner.unwrap_or(AddressOwner::Agent)
+    };
+    SharedOutputs::start(&config.output, owner, &config.data_dir, shutdown)
 }

@@ -3,9 +3,11 @@
 mod destination;
 mod line_load;
 mod sentence;
+mod shared;
 
 pub use destination::{AddressConfig, MulticastConfig, Selection, SerialOutputConfig, Sfi};
 pub use sentence::{Interval, SentenceConfig, SentenceKind};
+pub use shared::{Label, N2kHeading, N2kOutputConfig, SignalKOutputConfig};
 
 pub(crate) use line_load::SHORTEST_INTERVAL_SHARE;
 
@@ -39,6 +41,12 @@ pub struct OutputConfig {
     /// Serial ports to write to.
     #[serde(deserialize_with = "one_or_more")]
     pub serial: Vec<SerialOutputConfig>,
+    /// NMEA 2000 buses to send to.
+    #[serde(deserialize_with = "one_or_more")]
+    pub n2k: Vec<N2kOutputConfig>,
+    /// Signal K servers to send to.
+    #[serde(deserialize_with = "one_or_more")]
+    pub signalk: Vec<SignalKOutputConfig>,
     /// Seconds between two outputs.
     pub interval_s: Interval,
     /// Talker of all sentences.
@@ -63,6 +71,8 @@ impl Default for OutputConfig {
             udp: Vec::new(),
             multicast: Vec::new(),
             serial: Vec::new(),
+            n2k: Vec::new(),
+            signalk: Vec::new(),
             interval_s: Interval(1.0),
             talker: *b"II",
             hdg: SentenceConfig::ON,

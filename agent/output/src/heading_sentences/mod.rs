@@ -4,20 +4,17 @@
 //! mode E, `HDT` the true heading without a mode, and `$PBINQ` their quality: `$PBINQ,status,model
 //! version,age in days,standard error in degrees*hh`.
 //!
-//! A sentence is sent when a reading of the compass arrives, from that reading, if its interval has
-//! nearly passed. A timer sends it where no reading comes in time: the compass is slower than the
-//! output, or silent.
-//!
 //! While the corrected heading is withheld, nothing can be read as a heading: THS has mode V, HDG
 //! has no reading, and HDT is not sent.
 //!
 //! The usual talker is `II`, not `HC`: an agent that receives its own output must not take it for
 //! the compass.
 
-use crate::config::{OutputConfig, SHORTEST_INTERVAL_SHARE, SentenceConfig, SentenceKind};
+use crate::config::{OutputConfig, SentenceConfig, SentenceKind};
 use crate::framing::frame_sentence;
 use crate::line::Line;
-use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation};
+use crate::schedule::{Schedule, Trigger};
+use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
 use binnacle_nmea::sentence::{Hdg, Hdt, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, write};
 use std::time::Duration;
@@ -25,12 +22,6 @@ use tokio::time::Instant;
 
 /// Longest time until receivers hear that a heading is withheld.
 const LONGEST_PAUSE: Duration = Duration::from_millis(500);
-/// Share of the interval by which a reading may come early and the timer waits for a late one.
-const SLACK_SHARE: f64 = 0.4;
-/// Upper bound of that time.
-const MAX_SLACK: Duration = Duration::from_millis(250);
-/// Intervals of a sentence up to which the compass's own interval sets its time.
-const FOLLOWED_INTERVALS: f64 = 1.25;
 
 /// Corrected heading, as far as it is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,6 +38,14 @@ pub struct Heading {
     pub standard_error_deg: Option<f64>,
 }
 
+impl Heading {
+    /// Returns the compass heading with the deviation applied; none while it is withheld.
+    pub fn magnetic(&self) -> Option<MagneticHeading> {
+        self.true_heading?;
+        Some(self.compass? + self.deviation?)
+    }
+}
+
 /// Quality of the model behind a heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
@@ -56,29 +55,19 @@ pub struct Quality {
     pub age_days: f64,
 }
 
-/// Cause for which a heading may be sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Trigger {
-    /// A new reading of the compass.
-    Reading,
-    /// The timer of [`HeadingSentences::next_timer`].
-    Timer,
-}
-
 /// Sentences that are sent, each at its own interval.
 #[derive(Debug)]
 pub struct HeadingSentences {
-    schedules: Vec<Schedule>,
+    sentences: Vec<ScheduledSentence>,
     was_withheld: bool,
 }
 
 /// Talker and interval of a sentence.
 #[derive(Clone, Copy, Debug)]
-struct Schedule {
+struct ScheduledSentence {
     kind: SentenceKind,
     talker: [u8; 2],
-    interval: Duration,
-    due: Option<Instant>,
+    schedule: Schedule,
 }
 
 impl HeadingSentences {
@@ -92,22 +81,21 @@ impl HeadingSentences {
             (SentenceKind::Pbinq, always),
         ];
         let sent = own.into_iter().filter(|(_, own)| own.is_on);
-        let schedules = sent.map(|(kind, own)| Schedule {
+        let sentences = sent.map(|(kind, own)| ScheduledSentence {
             kind,
             talker: own.talker.unwrap_or(config.talker),
-            interval: Duration::from_secs_f64(config.interval_s(own)),
-            due: None,
+            schedule: Schedule::new(config.interval_s(own)),
         });
         HeadingSentences {
-            schedules: schedules.collect(),
+            sentences: sentences.collect(),
             was_withheld: false,
         }
     }
 
     /// Returns the time of the next [`Trigger::Timer`], given the compass's own interval.
     pub fn next_timer(&self, compass_interval: Duration, now: Instant) -> Instant {
-        let times = self.schedules.iter();
-        let times = times.map(|schedule| schedule.timer(compass_interval).unwrap_or(now));
+        let schedules = self.sentences.iter().map(|sentence| sentence.schedule);
+        let times = schedules.map(|schedule| schedule.timer(compass_interval).unwrap_or(now));
         times.fold(now + LONGEST_PAUSE, Instant::min)
     }
 
@@ -125,55 +113,23 @@ impl HeadingSentences {
         let at_once = is_withheld && !self.was_withheld;
         self.was_withheld = is_withheld;
         let mut lines = Vec::new();
-        for schedule in &mut self.schedules {
+        for sentence in &mut self.sentences {
+            let schedule = &mut sentence.schedule;
             if !at_once && !schedule.is_due(trigger, compass_interval, now) {
                 continue;
             }
-            schedule.note_due(now);
-            let text = schedule.sentence(heading, quality);
-            let kind = schedule.kind;
+            schedule.note_sent(now);
+            let text = sentence.text(heading, quality);
+            let kind = sentence.kind;
             lines.extend(text.map(|text| Line { kind, text }));
         }
         lines
     }
 }
 
-impl Schedule {
-    fn slack(&self) -> Duration {
-        self.interval.mul_f64(SLACK_SHARE).min(MAX_SLACK)
-    }
-
-    /// Returns the time at which the timer sends, after the first time.
-    fn timer(&self, compass_interval: Duration) -> Option<Instant> {
-        let due = self.due?;
-        let is_followed = !compass_interval.is_zero()
-            && compass_interval <= self.interval.mul_f64(FOLLOWED_INTERVALS);
-        Some(if is_followed {
-            due + self.slack()
-        } else {
-            due + self.interval.mul_f64(1.0 - SHORTEST_INTERVAL_SHARE)
-        })
-    }
-
-    fn is_due(&self, trigger: Trigger, compass_interval: Duration, now: Instant) -> bool {
-        match trigger {
-            Trigger::Reading => self.due.is_none_or(|due| now + self.slack() >= due),
-            Trigger::Timer => self
-                .timer(compass_interval)
-                .is_none_or(|timer| now >= timer),
-        }
-    }
-
-    /// Sets the next time. Readings that come early do not make the mean rate higher.
-    fn note_due(&mut self, now: Instant) {
-        let from = self.due.map_or(now, |due| due.max(now));
-        // At once is out of turn: the next time must not move away with each.
-        let from = from.min(now + self.slack());
-        self.due = Some(from + self.interval.mul_f64(SHORTEST_INTERVAL_SHARE));
-    }
-
+impl ScheduledSentence {
     /// Returns the sentence with its line end; none for an HDT that is withheld.
-    fn sentence(&self, heading: &Heading, quality: Option<Quality>) -> Option<Vec<u8>> {
+    fn text(&self, heading: &Heading, quality: Option<Quality>) -> Option<Vec<u8>> {
         let data = match self.kind {
             SentenceKind::Hdg => hdg(heading),
             SentenceKind::Ths => ths(heading),
