@@ -5,6 +5,7 @@
 pub(crate) mod agent;
 pub(crate) mod bridge;
 pub(crate) mod server;
+pub(crate) mod signalk;
 
 use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::time::Timestamp;
