@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
+use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tempfile::TempDir;
 use tokio::io::AsyncWriteExt;
@@ -20,6 +21,9 @@ use tokio_tungstenite::{WebSocketStream, client_async};
 
 /// Timeout; only a failing test reaches it.
 const PATIENCE: Duration = Duration::from_mins(1);
+/// Time within which a busy machine starts the server, and attempts at it.
+const START: Duration = Duration::from_mins(2);
+const ATTEMPTS: u32 = 3;
 /// Interval of the compass and the gyro.
 const INTERVAL: Duration = Duration::from_millis(100);
 /// Reading of the compass.
@@ -45,8 +49,9 @@ pub(crate) struct SignalKServer {
     pub(crate) compass_sent: watch::Receiver<Instant>,
     client: reqwest::Client,
     admin: Option<String>,
-    _process: Child,
-    _folder: TempDir,
+    process: Child,
+    /// Settings and log of the server.
+    folder: Arc<TempDir>,
 }
 
 impl SignalKServer {
@@ -82,44 +87,50 @@ impl SignalKServer {
         let (sent, compass_sent) = watch::channel(Instant::now());
         tokio::spawn(send_sentences(listener, sending, sent));
 
-        let folder = TempDir::new().unwrap();
-        // The server takes no port 0: this one was free a moment ago.
-        let free = TcpListener::bind("127.0.0.1:0").await.unwrap();
-        let address = free.local_addr().unwrap();
-        drop(free);
-        let mut settings = settings(address.port(), bridge);
+        let folder = Arc::new(TempDir::new().unwrap());
         if !security.is_null() {
-            settings["security"] = json!({"strategy": "./tokensecurity"});
             let path = folder.path().join("security.json");
             std::fs::write(path, security.to_string()).unwrap();
         }
-        std::fs::write(folder.path().join("settings.json"), settings.to_string()).unwrap();
-        let log = std::fs::File::create(folder.path().join("server.log")).unwrap();
-        let process = Command::new(program())
-            .arg("-c")
-            .arg(folder.path())
-            .stdin(Stdio::null())
-            .stdout(log.try_clone().unwrap())
-            .stderr(log)
-            .kill_on_drop(true)
-            .spawn()
-            .unwrap();
-        let server = SignalKServer {
-            address,
-            instruments,
-            compass_sent,
-            client: reqwest::Client::new(),
-            admin: None,
-            _process: process,
-            _folder: folder,
-        };
-        let url = server.url("/signalk");
-        server
-            .when("the server is up", async |server| {
-                server.client.get(&url).send().await.is_ok().then_some(())
-            })
-            .await;
-        server
+        // The server takes no port 0, and one that was free a moment ago may be taken by now.
+        for _ in 0..ATTEMPTS {
+            let (address, process) = spawn(folder.path(), bridge, !security.is_null()).await;
+            let mut server = SignalKServer {
+                address,
+                instruments: instruments.clone(),
+                compass_sent: compass_sent.clone(),
+                client: reqwest::Client::new(),
+                admin: None,
+                process,
+                folder: folder.clone(),
+            };
+            if server.is_up().await {
+                return server;
+            }
+        }
+        let log = std::fs::read_to_string(folder.path().join("server.log"));
+        panic!("the Signal K server does not start:\n{}", log.unwrap());
+    }
+
+    /// Waits until the server responds; not where it has ended, or found its port taken: then it
+    /// goes on without.
+    async fn is_up(&mut self) -> bool {
+        let url = self.url("/signalk");
+        let log = self.folder.path().join("server.log");
+        let mut ticks = interval(Duration::from_millis(50));
+        let up = timeout(START, async {
+            loop {
+                ticks.tick().await;
+                let log = std::fs::read_to_string(&log).unwrap();
+                if self.process.try_wait().unwrap().is_some() || log.contains("EADDRINUSE") {
+                    return false;
+                }
+                if self.client.get(&url).send().await.is_ok() {
+                    return true;
+                }
+            }
+        });
+        up.await.unwrap_or(false)
     }
 
     /// Returns the agent's input and its roles for this server.
@@ -216,6 +227,29 @@ impl DeltaSender {
         let delta = json!({"context": "vessels.self", "updates": [update]});
         self.0.send(Message::text(delta.to_string())).await.unwrap();
     }
+}
+
+/// Starts the server's process at a port that is free.
+async fn spawn(folder: &Path, bridge: SocketAddr, is_secure: bool) -> (SocketAddr, Child) {
+    let free = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let address = free.local_addr().unwrap();
+    drop(free);
+    let mut settings = settings(address.port(), bridge);
+    if is_secure {
+        settings["security"] = json!({"strategy": "./tokensecurity"});
+    }
+    std::fs::write(folder.join("settings.json"), settings.to_string()).unwrap();
+    let log = std::fs::File::create(folder.join("server.log")).unwrap();
+    let process = Command::new(program())
+        .arg("-c")
+        .arg(folder)
+        .stdin(Stdio::null())
+        .stdout(log.try_clone().unwrap())
+        .stderr(log)
+        .kill_on_drop(true)
+        .spawn()
+        .unwrap();
+    (address, process)
 }
 
 /// Returns the program that `scripts/signalk-server` installs.
