@@ -8,9 +8,7 @@
 use super::link::{CONNECT_TIMEOUT, Link};
 use crate::config::SignalKConfig;
 use reqwest::StatusCode;
-use rustls::pki_types::CertificateDer;
-use rustls::pki_types::pem::PemObject;
-use rustls::{ClientConfig, RootCertStore};
+use rustls::ClientConfig;
 use rustls_platform_verifier::BuilderVerifierExt;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -256,20 +254,10 @@ fn client(config: &SignalKConfig) -> io::Result<reqwest::Client> {
 
 /// Returns the TLS that trusts the system's authorities, or only the configured one.
 pub(crate) fn tls(config: &SignalKConfig) -> io::Result<ClientConfig> {
-    let Some(path) = &config.ca else {
+    let Some(roots) = config.load_authorities()? else {
         let builder = ClientConfig::builder().with_platform_verifier();
         return Ok(builder.map_err(io::Error::other)?.with_no_client_auth());
     };
-    let wrong =
-        |error: &dyn std::fmt::Display| io::Error::other(format!("{}: {error}", path.display()));
-    let mut roots = RootCertStore::empty();
-    for certificate in CertificateDer::pem_file_iter(path).map_err(|e| wrong(&e))? {
-        let certificate = certificate.map_err(|e| wrong(&e))?;
-        roots.add(certificate).map_err(|e| wrong(&e))?;
-    }
-    if roots.is_empty() {
-        return Err(wrong(&"there is no certificate in it"));
-    }
     Ok(ClientConfig::builder()
         .with_root_certificates(roots)
         .with_no_client_auth())

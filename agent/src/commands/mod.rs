@@ -17,7 +17,7 @@ use crate::sampler::Exclusion;
 use anyhow::Context;
 use bad_input::BadInput;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
-use configuration::load;
+use configuration::{load, load_to_run, load_with_files};
 use discover::discover;
 use enrolment::{enrol, rotate_token};
 use local_agent::{actions, page_pin, set_exclusion, status};
@@ -207,7 +207,7 @@ fn execute(command: Command) -> anyhow::Result<()> {
     let done = runtime.block_on(async {
         match command {
             Command::Run { config } => {
-                let config = load(&config)?;
+                let config = load_to_run(&config)?;
                 let shutdown = CancellationToken::new();
                 stop_on_signals(&shutdown)?;
                 run::run(config, shutdown).await
@@ -219,14 +219,14 @@ fn execute(command: Command) -> anyhow::Result<()> {
                 json,
             } => {
                 let listen = Duration::from_secs(seconds.into());
-                discover(load(&config)?, listen, json).await
+                discover(load_with_files(&config)?, listen, json).await
             }
             Command::Enrol {
                 server,
                 code,
                 config,
-            } => enrol(&load(&config)?, &server, &code).await,
-            Command::RotateToken { config } => rotate_token(&load(&config)?).await,
+            } => enrol(&load_with_files(&config)?, &server, &code).await,
+            Command::RotateToken { config } => rotate_token(&load_with_files(&config)?).await,
             Command::Hold { config, hold } => {
                 set_exclusion(&load(&config)?, hold.exclusion()).await
             }

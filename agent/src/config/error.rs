@@ -1,5 +1,7 @@
 //! Errors of the configuration: file, line and field.
 
+use super::document::Document;
+use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -28,38 +30,70 @@ pub(crate) enum ConfigError {
     },
 }
 
-/// Problem and its position in the text.
+impl ConfigError {
+    /// Creates the error of a field of a file, given by its keys, that was read before.
+    pub(crate) fn of_field(path: &Path, keys: &[&str], problem: String) -> ConfigError {
+        // What was read a moment ago can be read, or has no line any more.
+        let text = fs::read_to_string(path).unwrap_or_default();
+        Problem::of_field(keys, problem).in_file(path, &text)
+    }
+}
+
+/// Problem and its place in the text.
+#[derive(Debug)]
 pub(super) struct Problem {
-    pub(super) span: Option<Range<usize>>,
+    pub(super) place: Place,
     pub(super) problem: String,
 }
 
+/// Place of a problem.
+#[derive(Debug)]
+pub(super) enum Place {
+    /// Bytes of the text; the whole text if there are none.
+    Bytes(Option<Range<usize>>),
+    /// Field by its keys, as [`Document::span_of`] takes them.
+    Field(Vec<String>),
+}
+
 impl Problem {
+    /// Creates a problem of a value that knows its position.
+    pub(super) fn at(span: Range<usize>, problem: String) -> Problem {
+        Problem {
+            place: Place::Bytes(Some(span)),
+            problem,
+        }
+    }
+
+    /// Creates a problem of a field.
+    pub(super) fn of_field(keys: &[&str], problem: String) -> Problem {
+        let keys = keys.iter().map(|key| (*key).to_owned());
+        Problem {
+            place: Place::Field(keys.collect()),
+            problem,
+        }
+    }
+
     pub(super) fn in_file(self, path: &Path, text: &str) -> ConfigError {
-        let at = self.span.map_or(0, |span| span.start.min(text.len()));
-        let before = text.get(..at).unwrap_or_default();
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let document = Document::read(text);
+        let span = match &self.place {
+            Place::Bytes(span) => span.clone(),
+            Place::Field(keys) => document.span_of(keys),
+        };
+        let at = span.map_or(0, |span| span.start);
+        let field = match &self.place {
+            Place::Field(keys) => keys.iter().rev().find(|key| !is_number(key)).cloned(),
+            // A missing field is named by the problem.
+            Place::Bytes(_) => document.field_at(at).map(str::to_owned),
+        };
         ConfigError::Invalid {
             path: path.to_owned(),
-            line: before.matches('\n').count() + 1,
-            field: key_before(&text[line_start..at]),
+            line: document.line_at(at),
+            field: field.map(|field| format!("{field}: ")).unwrap_or_default(),
             problem: self.problem,
         }
     }
 }
 
-/// Returns the key before a value: `interval_s = ` gives `interval_s: `, `{ input = "a", talker = `
-/// gives `talker: `.
-fn key_before(text: &str) -> String {
-    let Some((left, _)) = text.rsplit_once('=') else {
-        return String::new();
-    };
-    let key = left
-        .trim_end()
-        .rsplit(|c: char| !(c.is_alphanumeric() || c == '_' || c == '-'))
-        .next();
-    match key {
-        Some(key) if !key.is_empty() => format!("{key}: "),
-        _ => String::new(),
-    }
+fn is_number(key: &str) -> bool {
+    key.bytes().all(|byte| byte.is_ascii_digit())
 }

@@ -4,6 +4,8 @@
 //! that loads can run. Paths in the file are relative to the file.
 
 mod alert;
+mod conflicts;
+mod document;
 mod error;
 mod limits;
 mod pin;
@@ -26,12 +28,12 @@ pub(crate) use uplink::{ModemConfig, UplinkConfig};
 
 use binnacle_input::InputConfig;
 use binnacle_output::config::OutputConfig;
-use error::Problem;
+use error::{Place, Problem};
 #[cfg(test)]
 use limits::PositiveSeconds;
 use limits::{RawLogLimit, SpoolLimit};
 use serde::Deserialize;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -107,53 +109,23 @@ impl Config {
 
 fn parse(text: &str) -> Result<Config, Problem> {
     let config: Config = toml::from_str(text).map_err(|e| Problem {
-        span: e.span(),
+        place: Place::Bytes(e.span()),
         problem: e.message().replace('\n', "; "),
     })?;
     for source in config.roles.sources() {
         let Some(input) = &source.input else { continue };
         if !config.inputs.contains_key(input.get_ref()) {
-            return Err(Problem {
-                span: Some(input.span()),
-                problem: format!("there is no input named {:?}", input.get_ref()),
-            });
+            return Err(Problem::at(
+                input.span(),
+                format!("there is no input named {:?}", input.get_ref()),
+            ));
         }
     }
     config.uplink.check(config.modem.as_ref())?;
-    check_shared_inputs(&config)?;
-    config.output.check().map_err(|wrong| Problem {
-        span: Some(wrong.span),
-        problem: wrong.problem,
-    })?;
+    let output = config.output.check();
+    output.map_err(|wrong| Problem::at(wrong.span, wrong.problem))?;
+    conflicts::check(&config)?;
     Ok(config)
-}
-
-/// Refuses outputs over an input that cannot carry them, and two over one.
-fn check_shared_inputs(config: &Config) -> Result<(), Problem> {
-    let buses = config.output.n2k.iter().map(|bus| &bus.input);
-    let servers = config.output.signalk.iter().map(|server| &server.input);
-    let mut shared = BTreeSet::new();
-    for (input, is_bus) in buses
-        .map(|input| (input, true))
-        .chain(servers.map(|input| (input, false)))
-    {
-        let name = input.get_ref();
-        let wrong = |problem: String| Problem {
-            span: Some(input.span()),
-            problem,
-        };
-        let found = config.inputs.get(name);
-        let found = found.ok_or_else(|| wrong(format!("there is no input named {name:?}")))?;
-        if is_bus {
-            found.n2k_address_owner().map_err(wrong)?;
-        } else if !matches!(found, InputConfig::SignalK(_)) {
-            return Err(wrong(format!("{} is no Signal K server", found.kind())));
-        }
-        if !shared.insert(name) {
-            return Err(wrong(format!("two outputs share the input {name:?}")));
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -241,7 +213,7 @@ stale_s = 15
             "agent.toml:14: interval_s: -1 is not from 0.01 to 3600 seconds"
         );
         let wrong = WHOLE.replace("poll_s = 21600", "pol_s = 21600");
-        assert!(message(&wrong).starts_with("agent.toml:19: unknown field `pol_s`"));
+        assert!(message(&wrong).starts_with("agent.toml:19: pol_s: unknown field `pol_s`"));
         let wrong = WHOLE.replace("\"127.0.0.1:8090\"", "\"localhost\"");
         assert!(message(&wrong).starts_with("agent.toml:16: listen: "));
         let wrong = WHOLE.replace(

@@ -109,20 +109,26 @@ impl SourceConfig {
 }
 
 impl RolesConfig {
-    /// Iterates over the sources of all roles.
-    pub(crate) fn sources(&self) -> impl Iterator<Item = &SourceConfig> {
+    /// Roles of true headings.
+    pub(super) const TRUE_HEADINGS: [&'static str; 2] = ["gyro", "satellite"];
+
+    /// Returns the sources of each role by its name in the file.
+    pub(super) fn by_role(&self) -> [(&'static str, &[SourceConfig]); 8] {
         [
-            &self.compass,
-            &self.gyro,
-            &self.satellite,
-            &self.position,
-            &self.rate_of_turn,
-            &self.log,
-            &self.roll,
-            &self.temperature,
+            ("compass", &self.compass),
+            ("gyro", &self.gyro),
+            ("satellite", &self.satellite),
+            ("position", &self.position),
+            ("rate_of_turn", &self.rate_of_turn),
+            ("log", &self.log),
+            ("roll", &self.roll),
+            ("temperature", &self.temperature),
         ]
-        .into_iter()
-        .flatten()
+    }
+
+    /// Iterates over the sources of all roles.
+    pub(super) fn sources(&self) -> impl Iterator<Item = &SourceConfig> {
+        self.by_role().into_iter().flat_map(|(_, sources)| sources)
     }
 
     /// Returns the roles without input names, for recordings.

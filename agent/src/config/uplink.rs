@@ -67,16 +67,12 @@ impl UplinkConfig {
         let is_burst = *self.profile.get_ref() == Profile::ShortBurst;
         match modem {
             None if is_burst => {
-                return Err(Problem {
-                    span: Some(self.profile.span()),
-                    problem: "short-burst needs a [modem]".to_owned(),
-                });
+                let problem = "short-burst needs a [modem]".to_owned();
+                return Err(Problem::at(self.profile.span(), problem));
             }
             Some(modem) if !is_burst => {
-                return Err(Problem {
-                    span: Some(modem.directory.span()),
-                    problem: "a modem needs the profile short-burst".to_owned(),
-                });
+                let problem = "a modem needs the profile short-burst".to_owned();
+                return Err(Problem::at(modem.directory.span(), problem));
             }
             _ => {}
         }
@@ -88,10 +84,8 @@ impl UplinkConfig {
             } else {
                 (min, format!("more than retry_max_s, {}", max.get_ref().0))
             };
-            return Err(Problem {
-                span: Some(wrong.span()),
-                problem: format!("{} is {other}", wrong.get_ref().0),
-            });
+            let problem = format!("{} is {other}", wrong.get_ref().0);
+            return Err(Problem::at(wrong.span(), problem));
         }
         Ok(())
     }

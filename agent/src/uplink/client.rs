@@ -335,17 +335,14 @@ impl Outgoing {
 fn load_root_store(path: &Path) -> anyhow::Result<RootCertStore> {
     let name = path.display();
     let certificates: Vec<CertificateDer<'static>> = CertificateDer::pem_file_iter(path)
-        .with_context(|| format!("{name}: pinned_ca"))?
+        .with_context(|| format!("{name} cannot be read"))?
         .collect::<Result<_, _>>()
-        .with_context(|| format!("{name}: pinned_ca is not a PEM certificate"))?;
-    anyhow::ensure!(
-        !certificates.is_empty(),
-        "{name}: pinned_ca has no certificate"
-    );
+        .with_context(|| format!("{name} is not a PEM certificate"))?;
+    anyhow::ensure!(!certificates.is_empty(), "{name} has no certificate");
     let mut roots = RootCertStore::empty();
     for certificate in certificates {
         let added = roots.add(certificate);
-        added.with_context(|| format!("{name}: pinned_ca is not a PEM certificate"))?;
+        added.with_context(|| format!("{name} is not a PEM certificate"))?;
     }
     Ok(roots)
 }

@@ -1,5 +1,6 @@
 //! `[inputs.NAME]`: one input, of exactly one kind.
 
+use super::baud::baud;
 use super::host_port::HostPort;
 use super::n2k_input::{ActisenseConfig, YdwgConfig};
 use super::signalk::SignalKConfig;
@@ -139,7 +140,7 @@ pub struct SerialConfig {
     /// Device, as `/dev/ttyUSB0`.
     pub path: String,
     /// Bits per second; IEC 61162-1 has 4800, 61162-2 38400.
-    #[serde(default = "standard_baud")]
+    #[serde(default = "standard_baud", deserialize_with = "baud")]
     pub baud: u32,
 }
 

@@ -1,5 +1,6 @@
 //! `[inputs.NAME]`: what an input reads.
 
+mod baud;
 mod host_port;
 mod input;
 mod n2k_input;

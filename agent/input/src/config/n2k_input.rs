@@ -1,5 +1,6 @@
 //! Gateways to an NMEA 2000 bus.
 
+use super::baud::some_baud;
 use super::host_port::HostPort;
 use serde::Deserialize;
 use std::net::SocketAddr;
@@ -23,6 +24,7 @@ pub enum ActisenseConfig {
 #[serde(deny_unknown_fields)]
 struct ActisenseTable {
     serial: Option<String>,
+    #[serde(default, deserialize_with = "some_baud")]
     baud: Option<u32>,
     tcp: Option<HostPort>,
 }

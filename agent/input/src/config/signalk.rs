@@ -1,7 +1,11 @@
 //! Signal K server: its address, and how the agent is admitted.
 
+use rustls::RootCertStore;
+use rustls::pki_types::CertificateDer;
+use rustls::pki_types::pem::PemObject;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
+use std::{fmt, io};
 use tokio_tungstenite::tungstenite::http::Uri;
 
 /// Signal K server to read.
@@ -58,6 +62,27 @@ impl TryFrom<SignalKForm> for SignalKConfig {
 }
 
 impl SignalKConfig {
+    /// Loads the authorities of `ca`, if it is set.
+    ///
+    /// # Errors
+    /// The file, and why it cannot be read or is no PEM file of certificates.
+    pub fn load_authorities(&self) -> io::Result<Option<RootCertStore>> {
+        let Some(path) = &self.ca else {
+            return Ok(None);
+        };
+        let wrong =
+            |error: &dyn fmt::Display| io::Error::other(format!("{}: {error}", path.display()));
+        let mut roots = RootCertStore::empty();
+        for certificate in CertificateDer::pem_file_iter(path).map_err(|e| wrong(&e))? {
+            let certificate = certificate.map_err(|e| wrong(&e))?;
+            roots.add(certificate).map_err(|e| wrong(&e))?;
+        }
+        if roots.is_empty() {
+            return Err(wrong(&"there is no certificate in it"));
+        }
+        Ok(Some(roots))
+    }
+
     /// Makes paths relative to the configuration's directory, and names the file of the
     /// registration.
     pub(super) fn resolve(&mut self, directory: &Path, data_dir: &Path, name: &str) {
