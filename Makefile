@@ -6,7 +6,7 @@ CARGO ?= cargo
 # What has tests, and the programs that tests drive: benchmarks and studies are no part of it.
 TESTED := --lib --bins --tests --example changes_baselines
 
-.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak bench bench-link bench-formats bench-peer bench-changes bench-web study study-adjust study-ships study-losses methods clean
+.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak soak-agent bench bench-link bench-latency bench-formats bench-peer bench-changes bench-web study study-adjust study-ships study-losses methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -62,6 +62,10 @@ soak: web ## The long tests: many kills, many voyages
 	@BINNACLE_SOAK=1 scripts/with-postgres $(CARGO) test --locked --workspace $(TESTED)
 	@PHASES=examples,coverage,fuzzing,stateful CASES=200 scripts/fuzz-api
 
+soak-agent: setup ## Run the agent at 50 sentences a second and print its memory (MINUTES=60)
+	$(CARGO) build --release --locked -p binnacle-agent
+	scripts/agent-load.py target/release/binnacle-agent $$(( 60 * $(or $(MINUTES),60) ))
+
 bench: setup ## Run the benchmarks of BENCHMARKS.md
 	$(CARGO) bench --locked -p binnacle-compass -p binnacle-analysis -p binnacle-tracking -p binnacle-adjustment -p binnacle-nmea -p binnacle-wire --bench '*'
 
@@ -69,6 +73,10 @@ bench-link: setup ## Count the bytes of a simulated month over a satellite, by p
 	$(CARGO) build --locked --workspace
 	BINNACLE_LINK_DAYS=30 $(CARGO) test --locked --workspace --test satellite \
 		packets_and_all -- --nocapture --test-threads=1 | grep 'bytes a day'
+
+bench-latency: setup ## Time compass readings through the agent, from datagram to datagram (SECONDS=120)
+	$(CARGO) build --release --locked -p binnacle-agent
+	scripts/agent-latency.py target/release/binnacle-agent $(or $(SECONDS),120)
 
 bench-formats: setup ## Compare frames with other formats, over stock HTTPS, and with their entropy
 	scripts/bench-formats

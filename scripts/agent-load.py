@@ -4,72 +4,24 @@
     scripts/agent-load.py [AGENT [SECONDS]]
 
 Plays instruments over TCP in real time to the agent (target/release/binnacle-agent, 300
-seconds by default), enrolled at a made-up shore on loopback that takes what it sends
-every ten seconds, and prints what /proc says as JSON. The first ten seconds, in which the
-agent starts, count for memory and not for the processor.
+seconds by default), which has a model, sends its heading to a client, and seals and sends
+a batch every ten seconds. Prints its memory each minute, and at the end what /proc says as
+JSON. The first ten seconds, in which the agent starts, count for memory and not for the
+processor. The exit code is 1 if the agent died.
 """
 
-import http.server
 import json
 import math
 import os
 import socket
-import subprocess
 import sys
-import tempfile
 import threading
 import time
 
-STREAM = "01934f2a-7c00-7000-8000-00000000002a"
-SETTINGS = {
-    "version": 1, "min_sog_kn": 4.0, "max_rate_of_turn_deg_min": 18.0, "settle_s": 0,
-    "max_swing_deg": 2.0, "sample_s": 10, "seal_s": 10,
-}
+from agent_under_test import Server, running, sentence
+
 WARM_UP_S = 10
-batches = 0
-
-
-class Shore(http.server.BaseHTTPRequestHandler):
-    protocol_version = "HTTP/1.1"
-
-    def reply(self, answer):
-        body = json.dumps(answer).encode()
-        self.send_response(200)
-        self.send_header("content-length", str(len(body)))
-        self.end_headers()
-        self.wfile.write(body)
-
-    def downlink(self, contiguous):
-        self.reply({"contiguous_seq": contiguous, "settings": SETTINGS,
-                    "server_time": "2026-11-21T07:00:00Z"})
-
-    def body(self):
-        self.rfile.read(int(self.headers.get("content-length", 0)))
-
-    def do_POST(self):
-        self.body()
-        self.reply({"token": "t", "stream": STREAM, "vessel_name": "Load",
-                    "compass_name": "Standard compass",
-                    "server_time": "2026-11-21T07:00:00Z"})
-
-    def do_PUT(self):
-        global batches
-        self.body()
-        batches += 1
-        self.downlink(int(self.path.split("?")[0].rsplit("/", 1)[1]))
-
-    def do_GET(self):
-        self.downlink(batches)
-
-    def log_message(self, *_):
-        pass
-
-
-def sentence(text):
-    check = 0
-    for octet in text.encode():
-        check ^= octet
-    return f"${text}*{check:02X}\r\n".encode()
+MINUTE_S = 60
 
 
 def second(now):
@@ -99,54 +51,74 @@ def play(listener):
         time.sleep(max(0, due - time.time()))
 
 
+def receive(address, heard):
+    """Reads what the agent sends, as an autopilot does."""
+    while True:
+        try:
+            with socket.create_connection(address) as connection:
+                while chunk := connection.recv(4096):
+                    heard.append(chunk.count(b"HDG"))
+        except OSError:
+            time.sleep(0.1)
+
+
+def free_port():
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        return listener.getsockname()[1]
+
+
 def cpu_s(pid):
-    fields = open(f"/proc/{pid}/stat").read().rsplit(")", 1)[1].split()
+    with open(f"/proc/{pid}/stat", encoding="utf-8") as stat:
+        fields = stat.read().rsplit(")", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def memory_mb(pid, name):
-    for line in open(f"/proc/{pid}/status"):
-        if line.startswith(name):
-            return int(line.split()[1]) * 1024 / 1e6
+    with open(f"/proc/{pid}/status", encoding="utf-8") as status:
+        for line in status:
+            if line.startswith(name):
+                return int(line.split()[1]) * 1024 / 1e6
     return math.nan
 
 
 def main():
     agent = sys.argv[1] if len(sys.argv) > 1 else "target/release/binnacle-agent"
     seconds = int(sys.argv[2]) if len(sys.argv) > 2 else 300
-    shore = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Shore)
-    threading.Thread(target=shore.serve_forever, daemon=True).start()
     listener = socket.create_server(("127.0.0.1", 0))
     threading.Thread(target=play, args=(listener,), daemon=True).start()
-    with tempfile.TemporaryDirectory() as folder:
-        config = os.path.join(folder, "agent.toml")
-        with open(config, "w") as file:
-            file.write(f"""data_dir = "state"
+    output = ("127.0.0.1", free_port())
+    heard = []
+    threading.Thread(target=receive, args=(output, heard), daemon=True).start()
+    configuration = f"""
 [inputs.bridge]
 tcp = "127.0.0.1:{listener.getsockname()[1]}"
 [output]
-tcp_server = "127.0.0.1:0"
+tcp_server = "{output[0]}:{output[1]}"
+interval_s = 0.1
 [page]
 listen = "127.0.0.1:0"
-""")
-        url = f"http://127.0.0.1:{shore.server_address[1]}"
-        subprocess.run([agent, "enrol", "--server", url, "--code", "LOAD", "--config", config],
-                       check=True, stdout=subprocess.DEVNULL)
-        process = subprocess.Popen([agent, "run", "--config", config],
-                                   stderr=subprocess.DEVNULL)
+"""
+    with running(agent, configuration) as process:
         time.sleep(WARM_UP_S)
         began, before = time.time(), cpu_s(process.pid)
-        time.sleep(seconds)
+        minutes = []
+        while (left := seconds - (time.time() - began)) > 0 and process.poll() is None:
+            time.sleep(min(MINUTE_S, left))
+            if process.poll() is None:
+                minutes.append(memory_mb(process.pid, "VmRSS"))
+                passed = (time.time() - began) / 60
+                print(f"{passed:6.1f} min  {minutes[-1]:6.2f} MB", flush=True)
+        if process.poll() is not None:
+            sys.exit(f"the agent died with code {process.returncode}")
         used, passed = cpu_s(process.pid) - before, time.time() - began
-        told = {
+        print(json.dumps({
             "seconds": round(passed), "sentences_a_second": len(list(second(0))),
-            "batches": batches, "cpu_percent": round(100 * used / passed, 2),
-            "resident_mb": round(memory_mb(process.pid, "VmRSS"), 1),
+            "headings_sent": sum(heard), "batches": Server.batches,
+            "cpu_percent": round(100 * used / passed, 2),
+            "resident_mb": round(minutes[-1], 1),
+            "first_minute_mb": round(minutes[0], 1),
             "most_resident_mb": round(memory_mb(process.pid, "VmHWM"), 1),
-        }
-        process.terminate()
-        process.wait()
-    print(json.dumps(told))
+        }))
 
 
 if __name__ == "__main__":
