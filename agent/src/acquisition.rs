@@ -4,7 +4,7 @@
 use crate::config::{RolesConfig, SilenceConfig};
 use crate::instruments::{
     ClockCheckpoint, GnssGuard, HeardSources, Independence, Interference, OwnHeadings, OwnOutput,
-    Readings, ReckonedPlace, Roles, SentHeading, SourceReport, StatedClocks,
+    Readings, ReckonedPlace, Roles, SentHeading, Signal, SourceReport, StatedClocks,
 };
 use crate::sampler::{Exclusion, Sampler};
 use binnacle_compass::angle::TrueHeading;
@@ -49,7 +49,7 @@ impl Acquisition {
             clocks: StatedClocks::default(),
             own_output: OwnOutput::new(OwnHeadings::default()),
             independence: Independence::default(),
-            guard: GnssGuard::default(),
+            guard: GnssGuard::new(silence.stale_s(silence.position.sampling())),
             heard: HeardSources::default(),
             is_recorded: false,
             start: Instant::now(),
@@ -108,6 +108,7 @@ impl Acquisition {
     /// Describes sources that must not be used as they are configured.
     pub(crate) fn source_problems(&self, now: Instant) -> Vec<String> {
         let mut problems = self.roles.problems(now, NAMED_FOR);
+        problems.extend(self.guard.problems());
         problems.extend(self.independence.problems());
         let repeaters = self.own_output.repeaters();
         problems.extend(
@@ -161,9 +162,13 @@ impl Acquisition {
             return;
         };
         let signals = self.roles.observe(seen, measured, age);
+        let receiver = self.roles.receiver(seen);
         self.guard.advance(self.roles.running_time(), heard);
         for signal in signals.into_iter().flatten() {
-            for signal in self.guard.apply(signal).into_iter().flatten() {
+            for signal in self.guard.apply(signal, receiver).into_iter().flatten() {
+                if matches!(signal, Signal::Position(_)) {
+                    self.roles.note_position_used(&seen.source);
+                }
                 let refused = self.independence.observe(signal);
                 self.sampler.apply(refused.unwrap_or(signal));
                 self.readings.apply(signal, measured);

@@ -177,7 +177,8 @@ impl Role {
         Choice::Taken
     }
 
-    fn note_served(&mut self, source: &Source) {
+    /// Records that a device serves.
+    pub(super) fn note_served(&mut self, source: &Source) {
         let is_known = self.has_served(source);
         if !is_known && self.served.len() < MAX_DEVICES {
             self.served.push(source.clone());

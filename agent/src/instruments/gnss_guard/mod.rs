@@ -3,15 +3,19 @@
 //!
 //! Invariants:
 //!
-//! - A fix is trusted if the ship can be there by dead reckoning from the last trusted fix, and
-//!   from two some minutes ago: a false track may begin where she is. She is reckoned on from the
-//!   earliest of them.
-//! - While fixes are not trusted, neither are speed, course and satellite compass of the
-//!   receivers. The reckoned place serves instead, with its error.
-//! - It ends when fixes have agreed with the reckoning for minutes. A track elsewhere that moves
-//!   as the ship does becomes the trusted one when it has lasted longer than the one before, or a
-//!   day: the first fix may have been the false one.
+//! - Each receiver is judged by itself. Its fix is trusted if the ship can be there by dead
+//!   reckoning from its last trusted fix, and from two some minutes ago: a false track may begin
+//!   where she is. She is reckoned on from the earliest of them.
+//! - Of the receivers that are heard and trusted the first one by the order of the roles is used.
+//!   Speed and course of another one are not.
+//! - While fixes are heard and none is trusted, there is interference: the reckoned place serves
+//!   instead, with its error. A satellite compass is not used while the first receiver is not
+//!   trusted.
+//! - A receiver is trusted again when its fixes have agreed with the reckoning for minutes. A track
+//!   elsewhere that moves as the ship does becomes a trusted one when it has lasted longer than
+//!   what speaks against it, or a day: the first fix may have been the false one.
 
+mod receiver;
 mod reckoning;
 
 pub(crate) use reckoning::{ReckonedPlace, offset};
@@ -20,20 +24,27 @@ use super::roles::{Instrument, ReferenceHeading, Refusal, Signal};
 use binnacle_compass::angle::TrueHeading;
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
+use binnacle_observation::Source;
+use receiver::{Evidence, Receiver};
 use reckoning::{Motion, Reckoning, Speed};
 use tokio::time::Instant;
 
 /// Time over which motion is compared with the reckoning, seconds.
 const TRACK_S: f64 = 300.0;
-/// Time after which fixes that agree with the reckoning are trusted again, seconds: no circle looks
-/// like a straight run for two of the times above.
-const RECOVERED_S: f64 = 2.0 * TRACK_S;
-/// Time after which a track elsewhere is accepted, seconds.
-const ACCEPT_AFTER_S: f64 = 86_400.0;
 /// Age up to which a heading or speed serves, seconds.
 const FRESH_S: f64 = 15.0;
 /// Silence of the receiver after which its speed is the last one's, seconds.
 const SILENT_S: f64 = 15.0;
+/// Receivers that are judged: senders of datagrams may be many.
+const MAX_RECEIVERS: usize = 16;
+
+/// Receiver that a signal comes from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GnssSource<'a> {
+    pub(crate) source: &'a Source,
+    /// Selection of the position that it matches, 0 being the best.
+    pub(crate) rank: usize,
+}
 
 /// Interference with the receivers, as it goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,22 +56,18 @@ pub(crate) struct Interference {
 }
 
 /// State of the guard.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct GnssGuard {
+    /// Silence after which the next receiver is used, seconds.
+    stale_s: f64,
     clock: GuardClock,
-    /// Reckoning from the last trusted fix.
-    from_last: Option<Reckoning>,
-    /// Reckonings from trusted fixes some minutes ago, the later one first.
-    from_earlier: [Option<Reckoning>; 2],
-    /// Time since which fixes have been trusted without a break, or before the interference.
-    trusted_s: f64,
-    /// Fixes that are not trusted.
-    elsewhere: Option<Track>,
+    receivers: Vec<Receiver>,
     interference: Option<Interference>,
     gyro: Option<Dated>,
     corrected: Option<Dated>,
     water_speed: Option<Dated>,
     ground_speed: Option<Dated>,
+    /// Time of the latest fix that was used.
     heard_fix_s: f64,
 }
 
@@ -69,14 +76,6 @@ pub(crate) struct GnssGuard {
 struct Dated {
     value: f64,
     at_s: f64,
-}
-
-/// Track of fixes that are not trusted, as far as it moves as the ship does.
-#[derive(Clone, Copy, Debug)]
-struct Track {
-    /// Reckoning from one of its fixes, some minutes ago at most.
-    from: Reckoning,
-    lasted_s: f64,
 }
 
 /// Clock of the guard: the ship's time as it advances, and the computer's where it does not.
@@ -109,6 +108,21 @@ impl GuardClock {
 }
 
 impl GnssGuard {
+    /// Creates a guard that has heard nothing; `stale_s` is the silence limit of the position.
+    pub(crate) fn new(stale_s: f64) -> GnssGuard {
+        GnssGuard {
+            stale_s,
+            clock: GuardClock::default(),
+            receivers: Vec::new(),
+            interference: None,
+            gyro: None,
+            corrected: None,
+            water_speed: None,
+            ground_speed: None,
+            heard_fix_s: 0.0,
+        }
+    }
+
     /// Advances to a moment by the ship's time and the computer's.
     pub(crate) fn advance(&mut self, ship: Option<Timestamp>, now: Instant) {
         let passed_s = self.clock.advance(ship, now);
@@ -116,37 +130,30 @@ impl GnssGuard {
             return;
         }
         let motion = self.motion();
-        if let Some(track) = &mut self.elsewhere {
-            track.from.advance(passed_s, motion);
-            track.lasted_s += passed_s;
-        }
-        let reckonings = self.from_last.iter_mut();
-        for reckoning in reckonings.chain(self.from_earlier.iter_mut().flatten()) {
-            reckoning.advance(passed_s, motion);
-        }
-        if self.interference.is_none() {
-            self.trusted_s += passed_s;
+        for receiver in &mut self.receivers {
+            receiver.advance(passed_s, motion);
         }
     }
 
-    /// Applies a signal. Returns those to use in its place.
-    pub(crate) fn apply(&mut self, signal: Signal) -> [Option<Signal>; 2] {
+    /// Applies a signal, of a receiver if one gave it. Returns those to use in its place.
+    pub(crate) fn apply(
+        &mut self,
+        signal: Signal,
+        receiver: Option<GnssSource<'_>>,
+    ) -> [Option<Signal>; 2] {
         let at_s = self.clock.seconds;
         let dated = |value: f64| Some(Dated { value, at_s });
-        match signal {
-            Signal::Position(fix) => {
-                self.heard_fix_s = at_s;
-                return self.fix(fix);
-            }
-            Signal::Gyro(ReferenceHeading { heading, .. }) => {
-                self.gyro = dated(heading.degrees());
-            }
-            Signal::WaterSpeed(kn) => self.water_speed = dated(kn),
-            Signal::Speed(_) | Signal::Course(_) if self.interference.is_some() => {
+        match (signal, receiver) {
+            (Signal::Position(fix), Some(receiver)) => return self.fix(fix, receiver),
+            (Signal::Speed(_) | Signal::Course(_), Some(receiver)) if !self.uses(receiver) => {
                 return [None; 2];
             }
-            Signal::Speed(kn) => self.ground_speed = dated(kn),
-            Signal::Satellite(_) if self.interference.is_some() => {
+            (Signal::Speed(kn), _) => self.ground_speed = dated(kn),
+            (Signal::Gyro(ReferenceHeading { heading, .. }), _) => {
+                self.gyro = dated(heading.degrees());
+            }
+            (Signal::WaterSpeed(kn), _) => self.water_speed = dated(kn),
+            (Signal::Satellite(_), _) if self.is_disturbed() => {
                 let refusal = Refusal::Interference;
                 return [Some(Signal::Refused(Instrument::Satellite, refusal)), None];
             }
@@ -171,39 +178,52 @@ impl GnssGuard {
 
     /// Returns the ship's place now.
     pub(crate) fn place(&self) -> Option<ReckonedPlace> {
-        self.from_last.as_ref().map(Reckoning::place)
+        self.ship().map(|reckoning| reckoning.place())
     }
 
-    fn fix(&mut self, fix: Position) -> [Option<Signal>; 2] {
-        let trusted = [Some(Signal::Position(fix)), None];
-        let Some(from_last) = self.from_last else {
-            self.trust(fix);
-            return trusted;
+    /// Describes the receivers that are not trusted while another one is used.
+    pub(crate) fn problems(&self) -> impl Iterator<Item = String> {
+        let used = self.used().map(|used| &self.receivers[used].source);
+        let refused = self
+            .receivers
+            .iter()
+            .filter(|receiver| !receiver.is_trusted && self.is_heard(receiver));
+        used.into_iter().flat_map(move |used| {
+            refused.clone().map(move |receiver| {
+                let source = &receiver.source;
+                format!(
+                    "position: {source} is not trusted: the vessel cannot be where it says; \
+                     {used} is used"
+                )
+            })
+        })
+    }
+
+    fn fix(&mut self, fix: Position, of: GnssSource<'_>) -> [Option<Signal>; 2] {
+        let Some(index) = self.hear(fix, of) else {
+            return [None; 2];
         };
-        let mut earlier = self.from_earlier.iter().flatten();
-        let is_possible = from_last.allows(fix) && earlier.all(|from| from.allows(fix));
-        if self.interference.is_none() && is_possible {
-            self.trust(fix);
-            return trusted;
+        if self.receivers[index].is_trusted {
+            self.receivers[index].follow(fix);
         }
-        if self.interference.is_none() {
-            let [later, earliest] = self.from_earlier;
-            let start = earliest.or(later).unwrap_or(from_last);
-            self.interference = Some(Interference {
-                since: self.clock.ship,
-                place: start.place().position,
-            });
-            // What the receivers gave of late may have been false already.
-            self.from_last = Some(start);
-            self.from_earlier = [None; 2];
+        if !self.receivers[index].is_trusted {
+            let evidence = self.evidence(index);
+            self.receivers[index].recover(fix, evidence);
         }
-        if self.is_over(fix) {
+        let used = self.used();
+        if used == Some(index) {
             self.interference = None;
-            self.elsewhere = None;
-            self.trust(fix);
-            return trusted;
+            self.heard_fix_s = self.clock.seconds;
+            return [Some(Signal::Position(fix)), None];
         }
-        let reckoned = self.from_last.unwrap_or(from_last).place();
+        let reckoned = self.place().filter(|_| used.is_none());
+        let Some(reckoned) = reckoned else {
+            return [None; 2];
+        };
+        self.interference.get_or_insert(Interference {
+            since: self.clock.ship,
+            place: reckoned.position,
+        });
         let speed_kn = match self.motion().speed {
             Speed::Read(kn) | Speed::Last(kn) => Some(kn),
             Speed::Unknown => None,
@@ -214,40 +234,96 @@ impl GnssGuard {
         ]
     }
 
-    /// Follows a fix that is not trusted. Returns whether its track has come to be.
-    fn is_over(&mut self, fix: Position) -> bool {
-        let follows = self.elsewhere.filter(|track| track.from.allows(fix));
-        let Some(mut track) = follows else {
-            self.elsewhere = Some(Track {
-                from: Reckoning::from_fix(fix),
-                lasted_s: 0.0,
-            });
-            return false;
-        };
-        let is_where_she_is = self.from_last.is_none_or(|from| from.allows(fix));
-        let needed_s = if is_where_she_is {
-            RECOVERED_S
-        } else {
-            self.trusted_s.clamp(RECOVERED_S, ACCEPT_AFTER_S)
-        };
-        if track.lasted_s >= needed_s {
-            if !is_where_she_is {
-                self.trusted_s = track.lasted_s;
+    /// Notes that a receiver gave a fix. Returns the receiver, unless it gives its fixes in a better
+    /// sentence.
+    fn hear(&mut self, fix: Position, of: GnssSource<'_>) -> Option<usize> {
+        let now_s = self.clock.seconds;
+        let Some(index) = self.find(of.source) else {
+            if self.receivers.len() >= MAX_RECEIVERS {
+                return None;
             }
-            return true;
+            let is_possible = self.ship().is_none_or(|ship| ship.allows(fix));
+            let is_trusted = is_possible && self.interference.is_none();
+            self.receivers.push(Receiver::new(of, now_s, is_trusted));
+            return Some(self.receivers.len() - 1);
+        };
+        let is_heard = self.is_heard(&self.receivers[index]);
+        let receiver = &mut self.receivers[index];
+        if of.rank > receiver.rank && is_heard {
+            return None;
         }
-        if track.from.seconds >= TRACK_S {
-            track.from = Reckoning::from_fix(fix);
-        }
-        self.elsewhere = Some(track);
-        false
+        (receiver.rank, receiver.heard_s) = (of.rank, now_s);
+        Some(index)
     }
 
-    fn trust(&mut self, fix: Position) {
-        self.from_last = Some(Reckoning::from_fix(fix));
-        let [later, _] = self.from_earlier;
-        if later.is_none_or(|from| from.seconds >= TRACK_S) {
-            self.from_earlier = [Some(Reckoning::from_fix(fix)), later];
+    fn find(&self, source: &Source) -> Option<usize> {
+        let mut receivers = self.receivers.iter();
+        receivers.position(|receiver| receiver.source.is_same_device(source))
+    }
+
+    fn is_heard(&self, receiver: &Receiver) -> bool {
+        self.clock.seconds - receiver.heard_s <= self.stale_s
+    }
+
+    /// Returns the receiver that is used: the first one that is heard and trusted.
+    fn used(&self) -> Option<usize> {
+        let trusted = (0..self.receivers.len()).filter(|index| {
+            let receiver = &self.receivers[*index];
+            receiver.is_trusted && self.is_heard(receiver)
+        });
+        trusted.min_by(|one, other| self.receivers[*one].order(&self.receivers[*other]))
+    }
+
+    /// Returns whether speed and course of a receiver are used. One that gives no fixes belongs to
+    /// those of its selection.
+    fn uses(&self, of: GnssSource<'_>) -> bool {
+        let used = self.used();
+        if let Some(index) = self.find(of.source) {
+            return used == Some(index);
+        }
+        let mut peers = self.receivers.iter().filter(|peer| peer.rank == of.rank);
+        self.interference.is_none()
+            && used.is_none_or(|used| of.rank <= self.receivers[used].rank)
+            && peers.all(|peer| peer.is_trusted)
+    }
+
+    /// Returns whether the first receiver that is heard is not trusted: what else comes from the
+    /// satellites may be false as well.
+    fn is_disturbed(&self) -> bool {
+        let heard = self.receivers.iter().filter(|one| self.is_heard(one));
+        let first = heard.min_by(|one, other| one.order(other));
+        self.interference.is_some() || first.is_some_and(|first| !first.is_trusted)
+    }
+
+    /// Returns the best reckoning of the ship: that of the receiver in use, or the one with the
+    /// smallest error.
+    fn ship(&self) -> Option<&Reckoning> {
+        let used = self
+            .used()
+            .and_then(|used| self.receivers[used].from_last.as_ref());
+        used.or_else(|| {
+            let reckonings = self
+                .receivers
+                .iter()
+                .filter_map(|one| one.from_last.as_ref());
+            let radius_nm = |reckoning: &Reckoning| reckoning.place().radius_nm;
+            reckonings.min_by(|one, other| radius_nm(one).total_cmp(&radius_nm(other)))
+        })
+    }
+
+    /// Returns the evidence about the fixes of a receiver.
+    fn evidence(&self, index: usize) -> Evidence {
+        let others = self
+            .receivers
+            .iter()
+            .enumerate()
+            .filter(|(other, receiver)| {
+                *other != index && receiver.is_trusted && self.is_heard(receiver)
+            });
+        let trusted_s = others.map(|(_, receiver)| receiver.trusted_s);
+        Evidence {
+            ship: self.ship().copied(),
+            others_trusted_s: trusted_s.fold(0.0, f64::max),
         }
     }
 

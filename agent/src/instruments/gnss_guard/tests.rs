@@ -10,22 +10,33 @@ struct Ship {
     true_place: Position,
     heading_deg: f64,
     speed_kn: f64,
+    used_place: Option<Position>,
 }
 
 impl Ship {
     fn new() -> Ship {
         Ship {
-            guard: GnssGuard::default(),
+            guard: GnssGuard::new(15.0),
             start: Instant::now(),
             seconds: 0,
             true_place: at(43.0, -3.0),
             heading_deg: 300.0,
             speed_kn: 15.0,
+            used_place: None,
         }
     }
 
     /// Sails for some seconds; the receiver gives what `receiver` makes of the true place.
     fn sail(&mut self, seconds: u64, mut receiver: impl FnMut(u64, Position) -> Option<Position>) {
+        self.sail_with(seconds, |second, place| [receiver(second, place), None]);
+    }
+
+    /// Sails for some seconds with two receivers.
+    fn sail_with(
+        &mut self,
+        seconds: u64,
+        mut receivers: impl FnMut(u64, Position) -> [Option<Position>; 2],
+    ) {
         for second in 0..seconds {
             self.seconds += 1;
             let now = self.start + Duration::from_secs(self.seconds);
@@ -35,15 +46,37 @@ impl Ship {
             let run_nm = self.speed_kn / 3600.0;
             self.true_place = offset(self.true_place, run_nm * cos, run_nm * sin);
             self.guard.advance(Some(time), now);
-            self.guard.apply(Signal::Gyro(ReferenceHeading {
+            let gyro = Signal::Gyro(ReferenceHeading {
                 heading: TrueHeading::new(self.heading_deg).unwrap(),
                 source: SourceId::new(1),
-            }));
-            if let Some(fix) = receiver(second, self.true_place) {
-                self.guard.apply(Signal::Speed(self.speed_kn));
-                self.guard.apply(Signal::Position(fix));
+            });
+            self.guard.apply(gyro, None);
+            let fixes = receivers(second, self.true_place);
+            for (rank, fix) in fixes.into_iter().enumerate() {
+                let Some(fix) = fix else { continue };
+                let used = self.receive(rank, Signal::Position(fix));
+                if let Some(Signal::Position(place) | Signal::Reckoned(place)) = used[0] {
+                    self.used_place = Some(place);
+                }
+                self.receive(rank, Signal::Speed(self.speed_kn));
             }
         }
+    }
+
+    /// Applies a signal of a receiver.
+    fn receive(&mut self, rank: usize, signal: Signal) -> [Option<Signal>; 2] {
+        let talker = [*b"GP", *b"GN"][rank];
+        let source = Source::of_sentence("bridge".into(), talker, *b"RMC");
+        let of = GnssSource {
+            source: &source,
+            rank,
+        };
+        self.guard.apply(signal, Some(of))
+    }
+
+    /// Returns the distance of the place that was used last, nautical miles.
+    fn used_error_nm(&self) -> f64 {
+        reckoning::distance_nm(self.used_place.unwrap(), self.true_place)
     }
 
     fn is_disturbed(&self) -> bool {
@@ -123,9 +156,9 @@ fn a_position_that_stands_still_is_noticed_by_the_log() {
     let held = ship.true_place;
     for _ in 0..600 {
         ship.sail(1, |_, _| None);
-        ship.guard.apply(Signal::WaterSpeed(15.0));
-        ship.guard.apply(Signal::Speed(0.0));
-        ship.guard.apply(Signal::Position(held));
+        ship.guard.apply(Signal::WaterSpeed(15.0), None);
+        ship.receive(0, Signal::Speed(0.0));
+        ship.receive(0, Signal::Position(held));
     }
     assert!(ship.is_disturbed());
 }
@@ -137,12 +170,13 @@ fn a_log_that_reads_nothing_and_a_gyro_that_is_off_raise_nothing() {
     for _ in 0..1800 {
         let corrected = TrueHeading::new(300.0);
         ship.guard.note_corrected(corrected);
-        ship.guard.apply(Signal::WaterSpeed(0.0));
+        ship.guard.apply(Signal::WaterSpeed(0.0), None);
         ship.sail(1, honest);
-        ship.guard.apply(Signal::Gyro(ReferenceHeading {
+        let gyro = Signal::Gyro(ReferenceHeading {
             heading: TrueHeading::new(180.0).unwrap(),
             source: SourceId::new(1),
-        }));
+        });
+        ship.guard.apply(gyro, None);
     }
     assert!(!ship.is_disturbed());
 }
@@ -172,14 +206,103 @@ fn nothing_of_the_receivers_is_used_meanwhile() {
     ship.sail(1, |_, _| Some(at(40.47, -3.56)));
     let place = Signal::Position(at(40.47, -3.56));
     assert!(matches!(
-        ship.guard.apply(place),
+        ship.receive(0, place),
         [Some(Signal::Reckoned(_)), Some(Signal::Speed(15.0))]
     ));
-    assert_eq!(ship.guard.apply(Signal::Speed(3.0)), [None; 2]);
+    assert_eq!(ship.receive(0, Signal::Speed(3.0)), [None; 2]);
     let heading = Signal::Satellite(ReferenceHeading {
         heading: TrueHeading::new(10.0).unwrap(),
         source: SourceId::new(1),
     });
     let refused = Signal::Refused(Instrument::Satellite, Refusal::Interference);
-    assert_eq!(ship.guard.apply(heading), [Some(refused), None]);
+    assert_eq!(ship.guard.apply(heading, None), [Some(refused), None]);
+}
+
+/// A place far from the ship.
+fn madrid() -> Position {
+    at(40.47, -3.56)
+}
+
+#[test]
+fn the_second_receiver_is_used_while_the_first_is_not_trusted() {
+    let mut ship = Ship::new();
+    ship.sail_with(3600, |_, place| [Some(place), Some(place)]);
+    ship.sail_with(3600, |_, place| [Some(madrid()), Some(place)]);
+    assert!(!ship.is_disturbed());
+    assert!(ship.used_error_nm() < 0.01, "{}", ship.used_error_nm());
+    let problems: Vec<String> = ship.guard.problems().collect();
+    assert_eq!(problems.len(), 1);
+    assert!(
+        problems[0].contains("bridge GPRMC is not trusted")
+            && problems[0].contains("bridge GNRMC is used"),
+        "{problems:?}"
+    );
+    // Its speed is not used either.
+    assert_eq!(ship.receive(0, Signal::Speed(3.0)), [None; 2]);
+    assert_ne!(ship.receive(1, Signal::Speed(3.0)), [None; 2]);
+    // It is right again.
+    ship.sail_with(610, |_, place| [Some(place), Some(place)]);
+    assert_eq!(ship.guard.problems().count(), 0);
+    assert_ne!(ship.receive(0, Signal::Speed(3.0)), [None; 2]);
+}
+
+#[test]
+fn a_first_receiver_that_is_drawn_away_slowly_does_not_take_the_second_with_it() {
+    let mut ship = Ship::new();
+    ship.sail_with(3600, |_, place| [Some(place), Some(place)]);
+    // It drifts off at 12 knots.
+    ship.sail_with(1200, |second, place| {
+        let drawn = offset(place, -12.0 * second as f64 / 3600.0, 0.0);
+        [Some(drawn), Some(place)]
+    });
+    assert!(!ship.is_disturbed());
+    assert!(ship.used_error_nm() < 0.01, "{}", ship.used_error_nm());
+}
+
+#[test]
+fn two_receivers_that_are_both_false_are_interference_and_the_first_to_recover_ends_it() {
+    let mut ship = Ship::new();
+    ship.sail_with(3600, |_, place| [Some(place), Some(place)]);
+    ship.sail_with(1800, |_, _| [Some(madrid()), Some(at(41.0, -4.0))]);
+    assert!(ship.is_disturbed());
+    assert!(ship.error_nm().0 < 1.0);
+    ship.sail_with(620, |_, place| [Some(madrid()), Some(place)]);
+    assert!(!ship.is_disturbed());
+    assert!(ship.used_error_nm() < 0.01);
+}
+
+#[test]
+fn a_false_track_is_never_accepted_while_another_receiver_says_otherwise() {
+    let mut ship = Ship::new();
+    ship.sail_with(1800, |_, place| [Some(place), Some(place)]);
+    ship.sail_with(30 * 3600, |_, place| {
+        [Some(offset(place, -20.0, 0.0)), Some(place)]
+    });
+    assert!(ship.used_error_nm() < 0.01, "{}", ship.used_error_nm());
+}
+
+#[test]
+fn the_first_receiver_is_used_again_at_once_after_silence() {
+    let mut ship = Ship::new();
+    ship.sail_with(600, |_, place| [Some(place), None]);
+    let mark = |place| offset(place, 0.05, 0.0);
+    ship.sail_with(60, |_, place| [None, Some(mark(place))]);
+    assert!((ship.used_error_nm() - 0.05).abs() < 0.01);
+    ship.sail_with(1, |_, place| [Some(place), Some(mark(place))]);
+    assert!(ship.used_error_nm() < 0.01);
+    assert!(!ship.is_disturbed());
+}
+
+#[test]
+fn a_receiver_that_is_false_when_it_is_first_heard_changes_nothing() {
+    let mut ship = Ship::new();
+    ship.sail_with(600, |_, place| [Some(place), None]);
+    ship.sail_with(600, |_, place| [Some(place), Some(madrid())]);
+    assert!(!ship.is_disturbed());
+    assert!(ship.used_error_nm() < 0.01);
+    let heading = Signal::Satellite(ReferenceHeading {
+        heading: TrueHeading::new(10.0).unwrap(),
+        source: SourceId::new(1),
+    });
+    assert_eq!(ship.guard.apply(heading, None), [Some(heading), None]);
 }

@@ -6,6 +6,7 @@
 //! of the compass, and is no reference.
 
 use super::gnss_clock::{GnssClock, Step};
+use super::gnss_guard::GnssSource;
 use super::role::{Moment, Role, Use};
 use crate::config::{RolesConfig, SilenceConfig};
 use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
@@ -211,7 +212,8 @@ impl Roles {
     }
 
     /// Returns the signals of an observation of some age on arrival: none when its source has no
-    /// role, or when a better source is alive.
+    /// role, or when a better source is alive. Every receiver gives its positions: which of them is
+    /// used depends on whether it is trusted.
     pub(crate) fn observe(
         &mut self,
         seen: &Observation,
@@ -243,14 +245,14 @@ impl Roles {
                 let rank = rank.filter(|_| self.position.is_recent(moment));
                 single(rank.and_then(|rank| self.set_clock(rank, stamp)))
             }
-            Reading::Speed { sog_kn } => single(
-                self.is_from_receiver(seen, moment)
-                    .then_some(Signal::Speed(sog_kn)),
-            ),
-            Reading::Course(course) => single(
-                self.is_from_receiver(seen, moment)
-                    .then_some(Signal::Course(course)),
-            ),
+            Reading::Speed { sog_kn } => {
+                let used = self.is_from_receiver(seen, moment);
+                single(used.then_some(Signal::Speed(sog_kn)))
+            }
+            Reading::Course(course) => {
+                let used = self.is_from_receiver(seen, moment);
+                single(used.then_some(Signal::Course(course)))
+            }
             Reading::RateOfTurn { deg_min } => {
                 let used = self.rate_of_turn.note_reading(seen, moment).source();
                 single(used.map(|_| Signal::RateOfTurn(deg_min)))
@@ -324,11 +326,24 @@ impl Roles {
         None
     }
 
-    /// Returns whether a reading comes from the receiver whose position is used.
+    /// Returns the receiver of an observation, where the position may come from it.
+    pub(crate) fn receiver<'a>(&self, seen: &'a Observation) -> Option<GnssSource<'a>> {
+        let source = &seen.source;
+        let rank = match seen.reading {
+            Reading::Fix { .. } => self.position.rank(seen),
+            Reading::Speed { .. } | Reading::Course(_) => self.position.device_rank(source),
+            _ => None,
+        };
+        rank.map(|rank| GnssSource { source, rank })
+    }
+
+    /// Records that the position of a source was used.
+    pub(crate) fn note_position_used(&mut self, source: &Source) {
+        self.position.note_served(source);
+    }
+
     fn is_from_receiver(&self, seen: &Observation, moment: Moment) -> bool {
-        let rank = self.position.device_rank(&seen.source);
-        self.position.is_recent(moment)
-            && rank.is_some_and(|rank| self.position.is_best(rank, moment))
+        self.position.is_recent(moment) && self.position.device_rank(&seen.source).is_some()
     }
 
     fn fix(
@@ -348,11 +363,6 @@ impl Roles {
         };
         // Time first: the fix belongs to the time it carries.
         let time = time.and_then(|stamp| self.set_clock(rank, stamp));
-        let moment = self.moment(moment.measured, moment.age);
-        let used = self.position.note_reading(seen, moment).source();
-        if used.is_none() {
-            return single(time);
-        }
         [
             time,
             Some(Signal::Position(position)),
