@@ -4,10 +4,12 @@
 //!
 //! - Time never runs backwards unannounced, and one wrong stamp does not move it: a jump counts
 //!   when a second stamp confirms it.
-//! - On board, a jump of more than ten minutes that the computer's clock does not confirm is
-//!   uncertain. Time stands still, so nothing is sampled. It goes on when the receiver returns to
-//!   its old time, when the server's or the computer's time decides, or when the new time has
-//!   lasted for a day without contradiction.
+//! - On board, a jump that the computer's clock does not confirm is uncertain: of seconds where the
+//!   time has run in step with the monotonic clock ([`pace`]), of ten minutes otherwise. Time stands
+//!   still, so nothing is sampled. It goes on when the receiver returns to its old time, when the
+//!   server's or the computer's time decides, or when the new time has lasted without
+//!   contradiction: for a day, or after a jump of less than ten minutes for as long as the old one.
+//!   A receiver that has learnt its leap seconds jumps by less than a minute.
 //! - On board, the first stamp after a restart is uncertain too where the checkpoint contradicts it
 //!   ([`super::clock_checkpoint`]).
 //! - On board, a date that lags by a multiple of 1,024 weeks, after which GPS week numbers start
@@ -15,8 +17,11 @@
 //! - Recorded and accelerated data work: without [`GnssClock::set_reference`] no other clock is
 //!   consulted, and every jump is accepted.
 
+mod pace;
+
 use super::clock_checkpoint::ClockCheckpoint;
 use binnacle_compass::time::Timestamp;
+use pace::Pace;
 use tokio::time::Instant;
 
 /// Largest difference between two receivers, or two sentences.
@@ -27,7 +32,7 @@ const MAX_STEP_S: f64 = 600.0;
 const CONFIRM_S: f64 = 60.0;
 /// Error of another clock up to which it may decide.
 const ARBITRATION_TOLERANCE_S: f64 = 3_600.0;
-/// Duration after which an uncontradicted new time is accepted.
+/// Duration after which an uncontradicted new time is accepted at the latest.
 const ACCEPT_AFTER_S: f64 = 86_400.0;
 /// Error of the computer's quartz, as a share of the elapsed time.
 const QUARTZ_DRIFT: f64 = 0.01;
@@ -59,6 +64,7 @@ pub(crate) struct GnssClock {
     /// First stamp of each rank since the active source was heard.
     waiting: Vec<Option<Timestamp>>,
     reference: Option<ReferenceClock>,
+    pace: Pace,
     /// Checkpoint from before the restart, until there is a first stamp.
     checkpoint: Option<ClockCheckpoint>,
     unconfirmed: Option<UnconfirmedJump>,
@@ -83,6 +89,12 @@ impl ReferenceClock {
         let passed = self.heard_at.saturating_duration_since(self.set_at);
         self.time.plus_seconds(passed.as_secs_f64())
     }
+
+    /// Returns the seconds since the clock was last confirmed.
+    fn since_valid_s(&self) -> f64 {
+        let passed = self.heard_at.saturating_duration_since(self.valid_at);
+        passed.as_secs_f64()
+    }
 }
 
 /// A jump that nothing confirms.
@@ -94,6 +106,8 @@ struct UnconfirmedJump {
     last: Timestamp,
     /// Duration by the receiver's own time.
     lasted_s: f64,
+    /// Duration after which it is accepted if nothing contradicts it.
+    needed_s: f64,
 }
 
 impl GnssClock {
@@ -106,6 +120,7 @@ impl GnssClock {
             active: ranks.saturating_sub(1),
             waiting: vec![None; ranks],
             reference: None,
+            pace: Pace::default(),
             checkpoint: None,
             unconfirmed: None,
             rolled_over: false,
@@ -161,7 +176,9 @@ impl GnssClock {
     /// Describes the fault of the receiver's time.
     pub(crate) fn problem(&self) -> Option<String> {
         if let Some(unconfirmed) = self.unconfirmed {
-            let offset = if unconfirmed.jump_s.abs() < 2.0 * ACCEPT_AFTER_S {
+            let offset = if unconfirmed.jump_s.abs() < MAX_STEP_S {
+                format!("{:+.0} s", unconfirmed.jump_s)
+            } else if unconfirmed.jump_s.abs() < 2.0 * ACCEPT_AFTER_S {
                 format!("{:+.1} h", unconfirmed.jump_s / 3_600.0)
             } else {
                 format!("{:+.0} days", unconfirmed.jump_s / 86_400.0)
@@ -245,12 +262,12 @@ impl GnssClock {
             return self.initialise(stamp);
         };
         let step_s = stamp.seconds_since(now);
-        if (0.0..=MAX_STEP_S).contains(&step_s) {
+        if (0.0..=MAX_STEP_S).contains(&step_s) && !self.is_early_or_back(stamp, step_s) {
             self.candidate = None;
             if step_s == 0.0 {
                 return Step::Held;
             }
-            self.now = Some(stamp);
+            self.advance(stamp);
             return Step::Advanced(stamp);
         }
         if (-RECEIVER_TOLERANCE_S..0.0).contains(&step_s) {
@@ -264,14 +281,22 @@ impl GnssClock {
             return Step::Held;
         }
         self.candidate = None;
-        if self.is_plausible_step(step_s) {
+        if self.is_plausible_step(stamp, step_s) {
             return self.jump(stamp);
         }
+        let passed_s = self.reference.map_or(0.0, |known| known.since_valid_s());
+        let jump_s = step_s - passed_s;
+        let needed_s = if jump_s.abs() < MAX_STEP_S {
+            self.pace.lasted_s().clamp(MAX_STEP_S, ACCEPT_AFTER_S)
+        } else {
+            ACCEPT_AFTER_S
+        };
         let unconfirmed = UnconfirmedJump {
             is_first: false,
-            jump_s: step_s,
+            jump_s,
             last: stamp,
             lasted_s: 0.0,
+            needed_s,
         };
         self.unconfirmed = Some(unconfirmed);
         self.resolve_jump(unconfirmed, stamp)
@@ -282,28 +307,35 @@ impl GnssClock {
             (Some(checkpoint), Some(reference)) => checkpoint.contradict(stamp, reference.now()),
             _ => None,
         };
-        self.now = Some(known.unwrap_or(stamp));
         let Some(known) = known else {
+            self.advance(stamp);
             return Step::Advanced(stamp);
         };
+        self.now = Some(known);
         self.unconfirmed = Some(UnconfirmedJump {
             is_first: true,
             jump_s: stamp.seconds_since(known),
             last: stamp,
             lasted_s: 0.0,
+            needed_s: ACCEPT_AFTER_S,
         });
         Step::Held
     }
 
+    fn is_early_or_back(&self, stamp: Timestamp, step_s: f64) -> bool {
+        self.reference
+            .is_some_and(|reference| self.pace.is_jump(stamp, reference.heard_at, step_s))
+    }
+
     /// Returns whether that much time may have passed since the clock was last confirmed.
-    fn is_plausible_step(&self, step_s: f64) -> bool {
+    fn is_plausible_step(&self, stamp: Timestamp, step_s: f64) -> bool {
         let Some(reference) = self.reference else {
             return true;
         };
-        let passed = reference
-            .heard_at
-            .saturating_duration_since(reference.valid_at);
-        let passed_s = passed.as_secs_f64();
+        if self.pace.is_proven() {
+            return !self.pace.is_jump(stamp, reference.heard_at, step_s);
+        }
+        let passed_s = reference.since_valid_s();
         (step_s - passed_s).abs() <= MAX_STEP_S + QUARTZ_DRIFT * passed_s
     }
 
@@ -319,7 +351,12 @@ impl GnssClock {
         unconfirmed.last = stamp;
         self.unconfirmed = Some(unconfirmed);
         let expected = now.plus_seconds(unconfirmed.lasted_s);
-        if stamp.seconds_since(expected).abs() <= MAX_STEP_S {
+        let has_returned = if self.pace.is_proven() {
+            self.pace.is_in_step(stamp, reference.heard_at)
+        } else {
+            stamp.seconds_since(expected).abs() <= MAX_STEP_S
+        };
+        if has_returned {
             return self.jump(stamp);
         }
         let reference_time = reference.now();
@@ -327,10 +364,13 @@ impl GnssClock {
             stamp.seconds_since(reference_time).abs(),
             expected.seconds_since(reference_time).abs(),
         );
-        let is_accepted = if new_s.min(old_s) <= ARBITRATION_TOLERANCE_S {
+        // A clock that is off by as much as the jump does not decide.
+        let nearer_s = new_s.min(old_s);
+        let decides = nearer_s <= ARBITRATION_TOLERANCE_S && 2.0 * nearer_s < new_s.max(old_s);
+        let is_accepted = if decides {
             new_s < old_s
         } else {
-            unconfirmed.lasted_s >= ACCEPT_AFTER_S
+            unconfirmed.lasted_s >= unconfirmed.needed_s
         };
         if is_accepted {
             return self.jump(stamp);
@@ -340,8 +380,21 @@ impl GnssClock {
 
     fn jump(&mut self, stamp: Timestamp) -> Step {
         self.unconfirmed = None;
-        self.now = Some(stamp);
+        if !self
+            .reference
+            .is_some_and(|reference| self.pace.is_in_step(stamp, reference.heard_at))
+        {
+            self.pace = Pace::default();
+        }
+        self.advance(stamp);
         Step::Jumped(stamp)
+    }
+
+    fn advance(&mut self, stamp: Timestamp) {
+        self.now = Some(stamp);
+        if let Some(reference) = self.reference {
+            self.pace.accept(stamp, reference.heard_at);
+        }
     }
 }
 

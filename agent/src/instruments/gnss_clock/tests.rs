@@ -220,3 +220,90 @@ fn a_date_before_gps_is_not_believed() {
     }
     assert_eq!(clock.now(), None);
 }
+
+#[test]
+fn a_jump_of_seconds_is_noticed_once_the_time_has_run_in_step() {
+    for off_s in [5, 30, 599, -5, -30, -599] {
+        let (mut clock, start) = on_board_clock(0);
+        hear(&mut clock, start, 1..600, 0);
+        let steps = hear(&mut clock, start, 600..4_000, off_s);
+        assert!(steps.iter().all(|step| *step == Step::Held), "{off_s}");
+        let problem = clock.problem().unwrap();
+        assert!(problem.contains("jumped by ") && problem.contains(" s: nothing is sampled"));
+        let back = hear(&mut clock, start, 4_000..4_002, 0);
+        assert_eq!(back, [Step::Jumped(at(4_000)), Step::Advanced(at(4_001))]);
+        assert_eq!(clock.problem(), None);
+    }
+}
+
+#[test]
+fn a_jump_of_seconds_is_accepted_when_it_has_lasted_as_long_or_the_computer_says_so() {
+    // The computer is minutes off: it cannot say.
+    let (mut clock, start) = on_board_clock(300);
+    hear(&mut clock, start, 1..1_200, 0);
+    let steps = hear(&mut clock, start, 1_200..2_700, 18);
+    let jump = steps
+        .iter()
+        .position(|step| matches!(step, Step::Jumped(_)));
+    assert!(
+        jump.is_some_and(|jump| (1_195..1_205).contains(&jump)),
+        "{jump:?}"
+    );
+    assert_eq!(steps[1_499], Step::Advanced(at(2_699 + 18)));
+    // The receiver has learnt its leap seconds.
+    let (mut clock, start) = on_board_clock(18);
+    hear(&mut clock, start, 1..1_200, 0);
+    let steps = hear(&mut clock, start, 1_200..1_202, 18);
+    assert_eq!(steps[1], Step::Jumped(at(1_201 + 18)));
+}
+
+#[test]
+fn a_delay_on_the_way_and_its_end_are_no_jump() {
+    let (mut clock, start) = on_board_clock(0);
+    hear(&mut clock, start, 1..600, 0);
+    // For half a minute nothing comes, then all of it at once, and again with some delay.
+    for second in 600..630 {
+        clock.set_receive_time(start + Duration::from_secs(630));
+        assert_eq!(clock.observe(0, at(second)), Step::Advanced(at(second)));
+    }
+    for delay_s in [20, 0, 9] {
+        for second in 0..60 {
+            let now = clock.now().unwrap().plus_seconds(1.0);
+            let heard_s = now.seconds_since(at(0)) + f64::from(delay_s);
+            clock.set_receive_time(start + Duration::from_secs_f64(heard_s));
+            assert_eq!(
+                clock.observe(0, now),
+                Step::Advanced(now),
+                "{delay_s} {second}"
+            );
+        }
+    }
+    assert_eq!(clock.problem(), None);
+}
+
+#[test]
+fn silence_and_the_drift_of_a_quartz_are_no_jump() {
+    let (mut clock, start) = on_board_clock(0);
+    for minute in 1..3_000 {
+        let heard = start + Duration::from_secs_f64(60.0 * f64::from(minute) * (1.0 + 1e-4));
+        clock.set_receive_time(heard);
+        let stamp = at(60 * i64::from(minute));
+        assert_eq!(clock.observe(0, stamp), Step::Advanced(stamp));
+    }
+    let late = start + Duration::from_secs(180_000 + 86_400);
+    clock.set_receive_time(late);
+    clock.observe(0, at(180_000 + 86_400));
+    let steps = clock.observe(0, at(180_000 + 86_401));
+    assert_eq!(steps, Step::Jumped(at(180_000 + 86_401)));
+}
+
+#[test]
+fn accelerated_instruments_are_not_judged_by_the_seconds() {
+    let (mut clock, start) = on_board_clock(0);
+    for second in 1..4_000_i64 {
+        // A thousand seconds in one, with a gap of minutes now and then.
+        clock.set_receive_time(start + Duration::from_millis(second.unsigned_abs()));
+        let stamp = at(second + 300 * (second / 500));
+        assert_eq!(clock.observe(0, stamp), Step::Advanced(stamp));
+    }
+}
