@@ -40,7 +40,7 @@ pub struct AlertSentences {
     talker: [u8; 2],
     compass: ManagedAlert,
     difference: ManagedAlert,
-    waiting: Vec<u8>,
+    waiting: Vec<Line>,
     alf_message: u8,
     alc_message: u8,
     heartbeat: u8,
@@ -99,7 +99,9 @@ impl AlertSentences {
             Some(Effect::Refused) | None => {
                 let time = time.and_then(time_of_day);
                 let (id, refused) = (command.alert, command.command);
-                write_arc(self.talker, time, id, refused, &mut self.waiting);
+                let mut text = Vec::new();
+                write_arc(self.talker, time, id, refused, &mut text);
+                self.send(&text);
                 None
             }
         }
@@ -112,8 +114,16 @@ impl AlertSentences {
             &self.difference
         };
         let message = self.alf_message;
-        write_alf(self.talker, &alert.alert(), message, &mut self.waiting);
+        let mut text = Vec::new();
+        write_alf(self.talker, &alert.alert(), message, &mut text);
+        self.send(&text);
         self.alf_message = (message + 1) % 10;
+    }
+
+    /// Lets the sentences of a message wait.
+    fn send(&mut self, message: &[u8]) {
+        let lines = Line::of_message(SentenceKind::Alf, message);
+        self.waiting.extend(lines);
     }
 
     /// Returns the sentences that are due.
@@ -125,8 +135,7 @@ impl AlertSentences {
             self.list_sent = Some(now);
             self.write_list();
         }
-        let waiting = std::mem::take(&mut self.waiting);
-        Line::split(SentenceKind::Alf, &waiting).collect()
+        std::mem::take(&mut self.waiting)
     }
 
     fn write_list(&mut self) {
@@ -135,12 +144,14 @@ impl AlertSentences {
             .filter(|alert| !alert.is_normal())
             .map(|alert| (alert.id(), alert.revision()))
             .collect();
-        write_alc(self.talker, &listed, self.alc_message, &mut self.waiting);
+        let mut list = Vec::new();
+        write_alc(self.talker, &listed, self.alc_message, &mut list);
+        self.send(&list);
         self.alc_message = (self.alc_message + 1) % 100;
         let talker = String::from_utf8_lossy(&self.talker);
         let (interval_s, count) = (LIST_INTERVAL.as_secs(), self.heartbeat);
         let heartbeat = frame_sentence(&format!("{talker}HBT,{interval_s},A,{count}"));
-        self.waiting.extend(heartbeat);
+        self.send(&heartbeat);
         self.heartbeat = (count + 1) % 10;
     }
 }
@@ -155,6 +166,7 @@ fn time_of_day(time: Timestamp) -> Option<TimeOfDay> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::line::Part;
     use binnacle_nmea::Data;
 
     struct Bridge {
@@ -235,6 +247,19 @@ mod tests {
         assert!(bridge.said(3)[0].starts_with("IIALF,2,1,1,070509.12,B,W,V,BIN,10001,1,2,"));
         let list = "IIALC,01,01,01,2,BIN,10001,1,2,BIN,10002,1,2";
         assert_eq!(bridge.said(31)[0], list);
+    }
+
+    #[test]
+    fn the_sentences_of_an_alert_are_parts_of_one_message() {
+        let mut bridge = Bridge::new();
+        bridge.conditions.difference = Some(condition(1));
+        let now = bridge.start;
+        bridge
+            .sentences
+            .update(bridge.conditions.clone(), None, now);
+        let parts = bridge.sentences.due(now).into_iter().map(|line| line.part);
+        let part = |number| Some(Part { number, total: 2 });
+        assert_eq!(parts.collect::<Vec<_>>(), [part(1), part(2), None, None],);
     }
 
     #[test]

@@ -2,10 +2,10 @@
 //! a TAG block before each sentence.
 
 use crate::config::{AddressConfig, MulticastConfig, Selection, Sfi};
-use crate::line::{Line, select};
+use crate::line::{Line, Part, select};
 use crate::open_error::OpenError;
 use binnacle_nmea::datagram;
-use binnacle_nmea::tag::Tag;
+use binnacle_nmea::tag::{Group, Tag};
 use socket2::{Domain, Protocol, Socket, Type};
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
@@ -14,6 +14,8 @@ use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 const MAX_DATAGRAM_BYTES: usize = 1472;
 /// Highest count of lines; 1 follows.
 const MAX_LINE_COUNT: u16 = 999;
+/// Highest code of a group of sentences; 1 follows.
+const MAX_GROUP_CODE: u16 = 99;
 
 /// Destination of datagrams. It never blocks: what the kernel does not take is lost.
 #[derive(Debug)]
@@ -31,6 +33,8 @@ struct LineTags {
     sfi: Sfi,
     destination: Option<Sfi>,
     line_count: u16,
+    /// Code of the latest message of several sentences.
+    group_code: u16,
 }
 
 impl Datagrams {
@@ -74,6 +78,7 @@ impl Datagrams {
                 sfi: config.sfi.unwrap_or(Sfi::first_of(talker)),
                 destination: config.destination,
                 line_count: 0,
+                group_code: 0,
             }),
         })
     }
@@ -113,16 +118,30 @@ fn multicast_socket(interface: Ipv4Addr) -> io::Result<UdpSocket> {
 }
 
 impl LineTags {
+    /// Returns the group of a sentence; the first one begins another.
+    fn group(&mut self, part: Part) -> Group {
+        if part.number == 1 {
+            self.group_code = self.group_code % MAX_GROUP_CODE + 1;
+        }
+        Group {
+            sentence: part.number,
+            sentences: part.total,
+            code: self.group_code,
+        }
+    }
+
     /// Puts lines into as few datagrams as carry them.
     fn datagrams<'a>(&mut self, lines: impl Iterator<Item = &'a Line>) -> Vec<Vec<u8>> {
         let mut datagrams = vec![Vec::new()];
         for line in lines {
             self.line_count = self.line_count % MAX_LINE_COUNT + 1;
+            let group = line.part.map(|part| self.group(part));
             let tag = Tag {
                 source: Some(self.sfi.bytes()),
                 destination: self.destination.as_ref().map(Sfi::bytes),
                 unix_micros: None,
                 line_count: Some(self.line_count),
+                group,
             };
             let mut whole = datagrams.pop().unwrap_or_default();
             let before = whole.len();
@@ -149,10 +168,7 @@ mod tests {
     const HDT: &[u8] = b"$GPHDT,274.07,T*03\r\n";
 
     fn lines(count: usize) -> Vec<Line> {
-        let line = Line {
-            kind: SentenceKind::Hdt,
-            text: HDT.to_vec(),
-        };
+        let line = Line::single(SentenceKind::Hdt, HDT.to_vec());
         vec![line; count]
     }
 
@@ -162,6 +178,7 @@ mod tests {
             sfi: sfi("HE0001"),
             destination: destination.map(sfi),
             line_count: 0,
+            group_code: 0,
         }
     }
 
@@ -180,6 +197,40 @@ mod tests {
             counts.collect::<Vec<_>>(),
             [(source, Some(2)), (source, Some(3))]
         );
+    }
+
+    #[test]
+    fn the_sentences_of_a_message_are_one_group() {
+        let mut tags = tags(None);
+        let alert = [HDT, HDT].concat();
+        let message = || Line::of_message(SentenceKind::Alf, &alert);
+        let sent = [lines(1), message(), lines(1), message()].concat();
+        let datagrams = tags.datagrams(sent.iter());
+        let groups = datagram::lines(&datagrams[0]).unwrap().map(|line| {
+            let group = parse_tagged(line).unwrap().tag.group;
+            group.map(|group| (group.sentence, group.sentences, group.code))
+        });
+        assert_eq!(
+            groups.collect::<Vec<_>>(),
+            [
+                None,
+                Some((1, 2, 1)),
+                Some((2, 2, 1)),
+                None,
+                Some((1, 2, 2)),
+                Some((2, 2, 2)),
+            ]
+        );
+        // A message of one sentence is none.
+        assert_eq!(Line::of_message(SentenceKind::Alf, HDT)[0].part, None);
+        let codes = (0..99).map(|_| {
+            tags.group(Part {
+                number: 1,
+                total: 2,
+            })
+            .code
+        });
+        assert_eq!(codes.last(), Some(2));
     }
 
     #[test]
@@ -227,10 +278,7 @@ mod tests {
         let mut sent = lines(1);
         sent.insert(
             0,
-            Line {
-                kind: SentenceKind::Ths,
-                text: b"$IITHS,,V*19\r\n".to_vec(),
-            },
+            Line::single(SentenceKind::Ths, b"$IITHS,,V*19\r\n".to_vec()),
         );
         output.send(&sent[..1]);
         output.send(&sent);

@@ -9,17 +9,45 @@ pub struct Line {
     pub kind: SentenceKind,
     /// Sentence.
     pub text: Vec<u8>,
+    /// Place in a message of several sentences.
+    pub(crate) part: Option<Part>,
+}
+
+/// Place of a sentence in a message of several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Part {
+    /// Number of the sentence, counted from 1.
+    pub(crate) number: u8,
+    /// Number of sentences in the message.
+    pub(crate) total: u8,
 }
 
 impl Line {
-    /// Splits sentences of one kind.
+    /// Creates a sentence that is a whole message.
+    pub fn single(kind: SentenceKind, text: Vec<u8>) -> Line {
+        Line {
+            kind,
+            text,
+            part: None,
+        }
+    }
+
+    /// Splits sentences of one kind, each a whole message.
     pub fn split(kind: SentenceKind, sentences: &[u8]) -> impl Iterator<Item = Line> {
-        sentences
-            .split_inclusive(|byte| *byte == b'\n')
-            .map(move |text| Line {
-                kind,
-                text: text.to_vec(),
-            })
+        let lines = sentences.split_inclusive(|byte| *byte == b'\n');
+        lines.map(move |text| Line::single(kind, text.to_vec()))
+    }
+
+    /// Splits the sentences of one message.
+    pub(crate) fn of_message(kind: SentenceKind, message: &[u8]) -> Vec<Line> {
+        let mut lines: Vec<Line> = Line::split(kind, message).collect();
+        let total = u8::try_from(lines.len()).unwrap_or(u8::MAX);
+        if total > 1 {
+            for (line, number) in lines.iter_mut().zip(1..=total) {
+                line.part = Some(Part { number, total });
+            }
+        }
+        lines
     }
 
     /// Returns whether a newer line of the same kind replaces this one.

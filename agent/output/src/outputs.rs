@@ -138,10 +138,10 @@ mod tests {
     }
 
     fn heading(text: &str) -> [Line; 1] {
-        [Line {
-            kind: SentenceKind::Hdt,
-            text: format!("{text}\r\n").into_bytes(),
-        }]
+        [Line::single(
+            SentenceKind::Hdt,
+            format!("{text}\r\n").into_bytes(),
+        )]
     }
 
     /// Waits until the given number of clients is connected.
@@ -216,10 +216,7 @@ mod tests {
         .await
         .unwrap();
         let [line] = heading("heading");
-        let alarm = Line {
-            kind: SentenceKind::Alr,
-            text: b"alarm\r\n".to_vec(),
-        };
+        let alarm = Line::single(SentenceKind::Alr, b"alarm\r\n".to_vec());
         opened.outputs.send(&[line, alarm]);
         let mut buffer = [0; 64];
         let length = all.recv(&mut buffer).await.unwrap();

@@ -152,10 +152,7 @@ mod tests {
     use tokio::io::AsyncReadExt;
 
     fn line(kind: SentenceKind, text: &str) -> Line {
-        Line {
-            kind,
-            text: format!("{text}\r\n").into_bytes(),
-        }
+        Line::single(kind, format!("{text}\r\n").into_bytes())
     }
 
     fn lines(kind: SentenceKind, text: &str) -> Arc<[Line]> {

@@ -178,10 +178,7 @@ mod tests {
     async fn what_waits_for_a_client_that_does_not_read_is_thrown_away() {
         let (mut client, stream) = small_client().await;
         let (lines, waiting) = broadcast::channel(1);
-        let long = Line {
-            kind: SentenceKind::Hdt,
-            text: vec![b'x'; 64 * 1024],
-        };
+        let long = Line::single(SentenceKind::Hdt, vec![b'x'; 64 * 1024]);
         lines.send([long].into()).unwrap();
         drop(lines);
         let (commands, _taken) = mpsc::channel(1);

@@ -24,6 +24,19 @@ pub struct Tag<'a> {
     pub unix_micros: Option<i64>,
     /// `n:`, the sender's count of lines, 1 to 999.
     pub line_count: Option<u16>,
+    /// `g:`, the message that the sentence is a part of.
+    pub group: Option<Group>,
+}
+
+/// The place of a sentence in a message of several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// Number of the sentence, counted from 1.
+    pub sentence: u8,
+    /// Number of sentences in the message.
+    pub sentences: u8,
+    /// Code of the message, the same in all its sentences.
+    pub code: u16,
 }
 
 /// A sentence and the TAG blocks before it.
@@ -85,6 +98,14 @@ pub fn write_tag(tag: &Tag<'_>, out: &mut Vec<u8>) {
         parameter(b'n', out);
         print::digits(out, u64::from(count), 1);
     }
+    if let Some(group) = tag.group {
+        parameter(b'g', out);
+        print::digits(out, u64::from(group.sentence), 1);
+        out.push(b'-');
+        print::digits(out, u64::from(group.sentences), 1);
+        out.push(b'-');
+        print::digits(out, u64::from(group.code), 1);
+    }
     let sum = checksum::compute(&out[start..]);
     checksum::append(sum, out);
     out.push(b'\\');
@@ -112,7 +133,8 @@ fn read_block<'a>(block: &'a [u8], tag: &mut Tag<'a>) -> Result<(), Rejected> {
             [b'c', b':', clock @ ..] => {
                 tag.unix_micros = Some(unix_micros(clock).ok_or(Rejected::BadTagBlock)?);
             }
-            // Groups and texts are not needed here.
+            [b'g', b':', group @ ..] => tag.group = read_group(group),
+            // Texts are not needed here.
             _ => {}
         }
     }
@@ -123,6 +145,18 @@ fn read_block<'a>(block: &'a [u8], tag: &mut Tag<'a>) -> Result<(), Rejected> {
 fn line_count(text: &[u8]) -> Option<u16> {
     let text = std::str::from_utf8(text).ok()?;
     text.parse().ok().filter(|count| *count <= 999)
+}
+
+/// Three numbers with hyphens; `None` where they are not understood: no reading depends on them.
+fn read_group(text: &[u8]) -> Option<Group> {
+    let mut parts = std::str::from_utf8(text).ok()?.split('-');
+    let group = Group {
+        sentence: parts.next()?.parse().ok()?,
+        sentences: parts.next()?.parse().ok()?,
+        code: parts.next()?.parse().ok()?,
+    };
+    let is_part = (1..=group.sentences).contains(&group.sentence);
+    (is_part && parts.next().is_none()).then_some(group)
 }
 
 /// Whole seconds or milliseconds since 1970.
@@ -174,6 +208,16 @@ mod tests {
         assert_eq!(tag.line_count, Some(17));
         assert_eq!(tag.source, Some(&b"HE0001"[..]));
         assert_eq!(tag.unix_micros, Some(1_700_000_000_000_000));
+        let group = Group {
+            sentence: 1,
+            sentences: 2,
+            code: 1234,
+        };
+        assert_eq!(tag.group, Some(group));
+        for wrong in ["g:", "g:1-2", "g:3-2-1", "g:0-2-1", "g:1-2-3-4", "g:a-b-c"] {
+            let line = tagged(wrong);
+            assert_eq!(parse_tagged(&line).unwrap().tag.group, None, "{wrong}");
+        }
     }
 
     #[test]
@@ -208,6 +252,11 @@ mod tests {
                 destination: Some(b"EI0002"),
                 unix_micros: None,
                 line_count: Some(999),
+                group: Some(Group {
+                    sentence: 2,
+                    sentences: 2,
+                    code: 99,
+                }),
             },
         ] {
             let mut line = Vec::new();

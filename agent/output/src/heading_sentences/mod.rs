@@ -121,7 +121,7 @@ impl HeadingSentences {
             schedule.note_sent(now);
             let text = sentence.text(heading, quality);
             let kind = sentence.kind;
-            lines.extend(text.map(|text| Line { kind, text }));
+            lines.extend(text.map(|text| Line::single(kind, text)));
         }
         lines
     }
