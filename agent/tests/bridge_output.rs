@@ -177,10 +177,23 @@ async fn a_difference_of_headings_is_raised_and_acknowledged_over_an_input() {
     instruments.send(command).await.unwrap();
     let acknowledged = console.hear(",B,W,A,BIN,10002,1,").await;
     assert!(acknowledged.contains("ALF,2,1,"), "{acknowledged}");
-    common::status_when(&running, |status| {
+    let acknowledged = common::status_when(&running, |status| {
         status["heading_difference"]["acknowledged"] == true
     })
     .await;
+    running.terminate().await;
+    let running = agent.run().await;
+    let again = common::status_when(&running, |status| !status["heading_difference"].is_null());
+    let (before, after) = (&acknowledged["heading_difference"], again.await);
+    let after = &after["heading_difference"];
+    assert_eq!(after["id"], before["id"]);
+    assert_eq!(
+        (&after["is_open"], &after["acknowledged"]),
+        (&true.into(), &true.into())
+    );
+    let mut console = Console::connect(running.output).await;
+    console.send("CAACN,,BIN,10002,1,Q,C").await;
+    console.hear(",B,W,A,BIN,10002,1,").await;
     running.kill().await;
 }
 

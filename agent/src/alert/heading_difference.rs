@@ -6,7 +6,8 @@
 //! - A mean over ten seconds is judged, so that rolling and yawing neither raise nor clear it.
 //! - It is raised once the mean has exceeded the limit for the set time, and cleared once it has
 //!   been below a share of the limit for as long.
-//! - Where there is nothing to compare, it stays as it is, for ten minutes at most.
+//! - Where there is nothing to compare, it stays as it is, for ten minutes at most: also after a
+//!   restart, which keeps the alarm and its acknowledgement.
 
 use crate::config::AlertConfig;
 use binnacle_compass::angle::{TrueHeading, wrap_180};
@@ -82,20 +83,25 @@ pub(crate) struct DifferenceMonitor {
     recent: VecDeque<(Instant, f64)>,
     /// Time since which the mean speaks for a change of the alarm.
     since: Option<Instant>,
-    last_compared: Option<Instant>,
+    /// Time of the last comparison, or of the start.
+    last_compared: Instant,
     last: Option<HeadingDifference>,
 }
 
 impl DifferenceMonitor {
-    /// Creates a monitor without an alarm.
-    pub(crate) fn new(config: &AlertConfig) -> DifferenceMonitor {
+    /// Creates a monitor with the last alarm from before a restart, if there was any.
+    pub(crate) fn new(
+        config: &AlertConfig,
+        last: Option<HeadingDifference>,
+        now: Instant,
+    ) -> DifferenceMonitor {
         DifferenceMonitor {
             limit_deg: config.difference_deg.0,
             time: config.difference_s.duration(),
             recent: VecDeque::new(),
             since: None,
-            last_compared: None,
-            last: None,
+            last_compared: now,
+            last,
         }
     }
 
@@ -166,7 +172,7 @@ impl DifferenceMonitor {
             let corrected_deg = compared.corrected.degrees();
             let difference_deg = wrap_180(corrected_deg - compared.reference_heading.degrees());
             self.recent.push_back((now, difference_deg));
-            self.last_compared = Some(now);
+            self.last_compared = now;
         }
         let is_old = |at: Instant| now.saturating_duration_since(at) >= MEAN_TIME;
         while self.recent.front().is_some_and(|(at, _)| is_old(*at)) {
@@ -184,8 +190,8 @@ impl DifferenceMonitor {
 
     fn end_unjudged(&mut self, now: Instant) -> bool {
         self.since = None;
-        let is_long = |at: Instant| now.saturating_duration_since(at) >= MAX_UNJUDGED;
-        let is_over = self.last_compared.is_none_or(is_long);
+        let unjudged = now.saturating_duration_since(self.last_compared);
+        let is_over = unjudged >= MAX_UNJUDGED;
         let open = self.last.as_mut().filter(|alarm| alarm.is_open && is_over);
         let Some(alarm) = open else { return false };
         alarm.is_open = false;
@@ -194,6 +200,12 @@ impl DifferenceMonitor {
 }
 
 impl HeadingDifference {
+    /// Returns whether a stored alarm is the same but for the latest difference.
+    pub(crate) fn is_stored_as(&self, stored: &HeadingDifference) -> bool {
+        let state = |alarm: &HeadingDifference| (alarm.id, alarm.is_open, alarm.acknowledged);
+        state(self) == state(stored)
+    }
+
     /// Returns the alarm for the page and `status`.
     pub(crate) fn status(&self) -> HeadingDifferenceStatus {
         let reference = self.reference.name();
@@ -236,12 +248,21 @@ mod tests {
     impl Voyage {
         fn new(config: &str) -> Voyage {
             let config: AlertConfig = toml::from_str(config).unwrap();
+            let start = Instant::now();
             Voyage {
-                monitor: DifferenceMonitor::new(&config),
-                start: Instant::now(),
+                monitor: DifferenceMonitor::new(&config, None, start),
+                start,
                 seconds: 0,
                 raised: 0,
             }
+        }
+
+        /// Restarts the agent: only what is stored is kept.
+        fn restart(&mut self) {
+            let stored = serde_json::to_string(&self.monitor.last()).unwrap();
+            let now = self.start + Duration::from_secs(self.seconds);
+            let last = serde_json::from_str(&stored).unwrap();
+            self.monitor = DifferenceMonitor::new(&AlertConfig::default(), last, now);
         }
 
         /// Compares for some seconds. Returns the second in which the alarm changed.
@@ -342,6 +363,29 @@ mod tests {
         assert!(voyage.is_open());
         assert!(voyage.sail(60, |_| None).is_some());
         assert!(!voyage.is_open());
+    }
+
+    #[test]
+    fn a_restart_keeps_the_alarm_and_its_acknowledgement() {
+        let mut voyage = Voyage::new("");
+        voyage.sail(120, |_| Some(15.0));
+        let raised = *voyage.monitor.last().unwrap();
+        voyage.monitor.acknowledge(raised.id);
+        assert!(!voyage.monitor.last().unwrap().is_stored_as(&raised));
+        voyage.restart();
+        // The instruments are heard after a while.
+        assert_eq!(voyage.sail(60, |_| None), None);
+        assert_eq!(voyage.sail(600, |_| Some(15.0)), None);
+        let kept = voyage.monitor.last().unwrap();
+        assert!(kept.is_open && kept.acknowledged && kept.id == raised.id);
+        voyage.restart();
+        assert!(voyage.sail(60, |_| Some(2.0)).is_some());
+        assert!(!voyage.is_open());
+        // Nothing is heard after the next restart: it does not stay for ever.
+        voyage.sail(60, |_| Some(15.0));
+        voyage.restart();
+        assert_eq!(voyage.sail(599, |_| None), None);
+        assert!(voyage.sail(2, |_| None).is_some());
     }
 
     #[test]

@@ -24,6 +24,21 @@ impl Agent {
         }
     }
 
+    /// Stores the heading-difference alarm when its state has changed.
+    pub(super) async fn save_difference(&mut self) {
+        let Some(alarm) = self.difference_monitor.last().copied() else {
+            return;
+        };
+        let stored = self.stored_difference.as_ref();
+        if stored.is_some_and(|stored| alarm.is_stored_as(stored)) {
+            return;
+        }
+        match self.spool.save_heading_difference(&alarm).await {
+            Ok(()) => self.stored_difference = Some(alarm),
+            Err(error) => tracing::error!(%error, "the heading-difference alarm cannot be stored"),
+        }
+    }
+
     fn comparison(&mut self, now: Instant) -> Option<Comparison> {
         let corrected = self.with_correction_inputs(|inputs| {
             correct(CorrectionInputs {

@@ -14,7 +14,9 @@ mod start;
 mod store_samples;
 
 use crate::acquisition::Acquisition;
-use crate::alert::{AlarmSentence, AlertMonitor, AlertRecord, DifferenceMonitor};
+use crate::alert::{
+    AlarmSentence, AlertMonitor, AlertRecord, DifferenceMonitor, HeadingDifference,
+};
 use crate::config::{Config, SilenceConfig, UploadPlan};
 use crate::instruments::Latest;
 use crate::raw_log::{RawLog, Second};
@@ -78,6 +80,8 @@ struct Agent {
     difference_monitor: DifferenceMonitor,
     /// Alert as the spool has it.
     stored_alert: Option<AlertRecord>,
+    /// Heading-difference alarm as the spool has it.
+    stored_difference: Option<HeadingDifference>,
     /// Reading of the compass that was last offered to the outputs.
     offered_reading: Option<Latest<CompassHeading>>,
     /// Set if the last heading sent was withheld because its band was too wide.
@@ -155,6 +159,7 @@ impl Agent {
         self.acquisition.sampler.finish();
         self.collect();
         self.store(Seal::Full).await;
+        self.save_difference().await;
         self.save_clock_checkpoint().await;
         self.raw_log.flush(Instant::now());
         if let Err(error) = self.uplink.await {
@@ -200,6 +205,7 @@ impl Agent {
             self.store(seal).await;
         }
         self.save_alert().await;
+        self.save_difference().await;
         self.uplink_handle
             .ship_time
             .send_replace(self.acquisition.time());

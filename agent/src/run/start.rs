@@ -33,6 +33,7 @@ impl Agent {
         let (uplink, uplink_handle) = uplink::prepare(&config.uplink, &spool).await?;
         let exclusion = spool.exclusion().await?;
         let stored_alert = spool.alert().await?;
+        let stored_difference = spool.heading_difference().await?;
         let judged_by = uplink_handle.model.borrow().as_ref().map(|model| model.id);
         let settings = uplink_handle.settings.borrow().clone();
         let last_contact = uplink_handle.link.borrow().last_contact;
@@ -112,7 +113,12 @@ impl Agent {
             sentences: HeadingSentences::new(&config.output),
             shared_outputs,
             exclusion,
-            difference_monitor: DifferenceMonitor::new(&config.alert),
+            difference_monitor: DifferenceMonitor::new(
+                &config.alert,
+                stored_difference,
+                Instant::now(),
+            ),
+            stored_difference,
             alert_monitor: AlertMonitor::new(config.alert, stored_alert, judged_by),
             stored_alert,
             offered_reading: None,

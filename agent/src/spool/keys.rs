@@ -9,6 +9,7 @@ pub(super) const SETTINGS: &str = "settings";
 pub(super) const EXCLUSION: &str = "hold";
 pub(super) const LAST_CONTACT: &str = "last_contact";
 pub(super) const ALERT: &str = "alert";
+pub(super) const HEADING_DIFFERENCE: &str = "heading_difference";
 pub(super) const THINNED: &str = "thinned";
 pub(super) const ACCOUNT: &str = "account";
 pub(super) const CLOCK_CHECKPOINT: &str = "clocks";

@@ -3,9 +3,10 @@
 use super::account::BudgetAccount;
 use super::database::{Spool, forget, put, text};
 use super::keys::{
-    ACCOUNT, ALERT, CLOCK_CHECKPOINT, EXCLUSION, LAST_CONTACT, MODEL, SETTINGS, WITHDRAWN,
+    ACCOUNT, ALERT, CLOCK_CHECKPOINT, EXCLUSION, HEADING_DIFFERENCE, LAST_CONTACT, MODEL, SETTINGS,
+    WITHDRAWN,
 };
-use crate::alert::AlertRecord;
+use crate::alert::{AlertRecord, HeadingDifference};
 use crate::instruments::ClockCheckpoint;
 use crate::sampler::Exclusion;
 use binnacle_compass::time::Timestamp;
@@ -44,6 +45,21 @@ impl Spool {
     pub(crate) async fn save_alert(&self, record: &AlertRecord) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, ALERT, record).await?;
+        tx.commit().await
+    }
+
+    /// Returns the last heading-difference alarm.
+    pub(crate) async fn heading_difference(&self) -> sqlx::Result<Option<HeadingDifference>> {
+        self.get(HEADING_DIFFERENCE).await
+    }
+
+    /// Saves the heading-difference alarm.
+    pub(crate) async fn save_heading_difference(
+        &self,
+        alarm: &HeadingDifference,
+    ) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        put(&mut tx, HEADING_DIFFERENCE, alarm).await?;
         tx.commit().await
     }
 
