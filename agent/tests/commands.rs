@@ -54,13 +54,13 @@ async fn a_recording_becomes_a_table_and_a_tally() {
     assert_eq!(
         rows.next().unwrap(),
         "time,lat,lon,compass_deg,gyro_deg,satellite_deg,sog_kn,rate_of_turn_deg_min,spread_deg,windows,\
-         cog_deg,roll_deg,roll_spread_deg,temperature_c,gyro_source,satellite_source"
+         cog_deg,roll_deg,roll_spread_deg,temperature_c,gyro_source,satellite_source,position_reckoned"
     );
     assert_eq!(
         rows.next().unwrap(),
         // 55588 is the number of the source that any recording calls "HE THS".
         "2026-09-01T00:13:30Z,43.53103,-2.95412,41.999,45.000,,12.00,0.00,0.057,60,\
-         47.00,-0.60,1.50,18.0,55588,"
+         47.00,-0.60,1.50,18.0,55588,,false"
     );
     let tally: Value = serde_json::from_slice(&done.stderr).unwrap();
     assert_eq!(tally["samples"], rows.count() + 1);

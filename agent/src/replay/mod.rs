@@ -108,7 +108,7 @@ pub(crate) fn replay(recordings: &Recordings<'_>) -> anyhow::Result<Replayed> {
     })?;
     acquisition.sampler.finish();
     replayed.samples.extend(acquisition.sampler.take_samples());
-    replayed.leave_out_reckoned();
+    replayed.note_reckoned();
     replayed.windows = acquisition.sampler.take_tally();
     replayed.notes.extend(ahead);
     for recording in &finished {
@@ -132,14 +132,17 @@ pub(crate) fn replay(recordings: &Recordings<'_>) -> anyhow::Result<Replayed> {
 }
 
 impl Replayed {
-    /// Leaves out samples whose position is by dead reckoning: no estimate may use them.
-    fn leave_out_reckoned(&mut self) {
-        let before = self.samples.len();
-        self.samples.retain(|sample| !sample.position_reckoned);
-        let count = before - self.samples.len();
+    /// Notes the samples whose position is by dead reckoning: no estimate uses them.
+    fn note_reckoned(&mut self) {
+        let reckoned = self
+            .samples
+            .iter()
+            .filter(|sample| sample.position_reckoned);
+        let count = reckoned.count();
         if count > 0 {
             self.notes.push(format!(
-                "{count} samples left out: GNSS interference, their position is by dead reckoning"
+                "{count} samples under GNSS interference: their position is by dead reckoning, \
+                 and no estimate uses them"
             ));
         }
     }

@@ -23,6 +23,7 @@ pub(super) fn write(samples: &[Sample]) -> anyhow::Result<Vec<u8>> {
         "temperature_c",
         "gyro_source",
         "satellite_source",
+        "position_reckoned",
     ])?;
     for sample in samples {
         table.write_record(record(sample))?;
@@ -30,7 +31,7 @@ pub(super) fn write(samples: &[Sample]) -> anyhow::Result<Vec<u8>> {
     Ok(table.into_inner()?)
 }
 
-fn record(sample: &Sample) -> [String; 16] {
+fn record(sample: &Sample) -> [String; 17] {
     let heading = |heading: Option<TrueHeading>| number(heading.map(TrueHeading::degrees), 3);
     let source =
         |source: Option<SourceId>| source.map_or(String::new(), |s| s.number().to_string());
@@ -51,6 +52,7 @@ fn record(sample: &Sample) -> [String; 16] {
         number(sample.temperature_c, 1),
         source(sample.gyro_source),
         source(sample.satellite_source),
+        sample.position_reckoned.to_string(),
     ]
 }
 

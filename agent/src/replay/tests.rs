@@ -107,17 +107,32 @@ fn all(folder: &TempDir, name: &str) -> PathBuf {
 }
 
 #[test]
-fn samples_under_interference_are_left_out_and_said() {
+fn samples_under_interference_are_marked_in_the_table() {
     let folder = TempDir::new().unwrap();
     let spoofed = record(&folder, "spoofed", |second| {
         let north_min = if second < 1_500 { 0.0 } else { 20.0 };
         [rmc_off(second, north_min), compass(second), gyro(second)].join("\n")
     });
     let replayed = run(&[spoofed]).unwrap();
-    let last = replayed.samples.last().unwrap();
-    assert!(last.time < at(NOON).plus_seconds(1_500.0), "{last:?}");
+    let table = String::from_utf8(replayed.csv().unwrap()).unwrap();
+    let (mut trusted, mut reckoned) = (0, 0);
+    for row in table.lines().skip(1) {
+        let columns: Vec<&str> = row.split(',').collect();
+        let spoofed_since = at(NOON).plus_seconds(1_500.0).to_string();
+        let is_spoofed = columns[0] >= spoofed_since.as_str();
+        assert_eq!(columns[16], is_spoofed.to_string(), "{row}");
+        *if is_spoofed {
+            &mut reckoned
+        } else {
+            &mut trusted
+        } += 1;
+    }
+    assert!(trusted > 0 && reckoned > 0, "{table}");
     let notes = replayed.notes.join("\n");
-    assert!(notes.contains("left out: GNSS interference"), "{notes}");
+    assert!(
+        notes.contains(&format!("{reckoned} samples under GNSS interference")),
+        "{notes}"
+    );
 }
 
 #[test]

@@ -97,6 +97,7 @@ fn sample(row: &CsvRow) -> Result<Sample, (&'static str, String)> {
         sog_kn: row.sog_kn,
         spread_deg: row.spread_deg,
         windows: row.windows.unwrap_or(60.0).clamp(1.0, 65_535.0) as u16,
+        position_reckoned: row.position_reckoned,
         ..Sample::new(time, position, compass)
     })
 }

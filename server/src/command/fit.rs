@@ -58,7 +58,12 @@ fn find(arguments: &Fit) -> Result<FitResult, BadInput> {
         }
     };
     let mut model = fitted.map_err(refused)?;
-    model.samples_rejected += (readings.len() - observations.len()) as u64;
+    let reckoned = table
+        .rows
+        .iter()
+        .filter(|row| row.position_reckoned)
+        .count();
+    model.samples_rejected += (reckoned + readings.len() - observations.len()) as u64;
     Ok(FitResult {
         model,
         check: referred.check,

@@ -174,7 +174,7 @@ fn check_header(path: &str, header: &StringRecord) -> Result<(), BadInput> {
 }
 
 /// Known columns.
-const COLUMNS: [&str; 21] = [
+const COLUMNS: [&str; 22] = [
     "time",
     "lat",
     "lon",
@@ -196,6 +196,7 @@ const COLUMNS: [&str; 21] = [
     "spread_deg",
     "windows",
     "weight",
+    "position_reckoned",
 ];
 /// Longest time or number, bytes; error messages quote it.
 const LONGEST_VALUE: usize = 64;
@@ -215,6 +216,12 @@ fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, 
                     let time = Timestamp::parse(text);
                     row.time = Some(time.map_err(|error| (column.to_owned(), error.to_string()))?);
                 }
+                continue;
+            }
+            "position_reckoned" => {
+                let is_reckoned = parse_switch(text);
+                row.position_reckoned =
+                    is_reckoned.map_err(|problem| (column.to_owned(), problem))?;
                 continue;
             }
             "lat" => &mut row.lat,
@@ -252,5 +259,14 @@ fn parse(text: &str) -> Result<Option<f64>, String> {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(Some(number)),
         _ => Err(format!("{text:?} is not a finite number")),
+    }
+}
+
+/// Parses `true` or `false`; an empty text is false.
+fn parse_switch(text: &str) -> Result<bool, String> {
+    match text {
+        "" | "false" => Ok(false),
+        "true" => Ok(true),
+        _ => Err(format!("{text:?} is neither true nor false")),
     }
 }

@@ -113,6 +113,7 @@ fn a_bad_value_beside_the_headings_is_refused_by_line_and_column() {
         ("temperature_c", "273"),
         ("gyro_source", "1.5"),
         ("satellite_source", "70000"),
+        ("position_reckoned", "maybe"),
     ] {
         let text = format!("{columns},{column}\n-3,24000,38000,10,9,{value}\n");
         std::fs::write(folder.path().join("bad.csv"), text).unwrap();
@@ -121,4 +122,41 @@ fn a_bad_value_beside_the_headings_is_refused_by_line_and_column() {
             assert_refused(&refused, &[&format!("bad.csv:2: {column}: ")]);
         }
     }
+}
+
+#[test]
+fn rows_of_a_reckoned_position_are_in_no_estimate() {
+    let folder = tempfile::tempdir().unwrap();
+    samples_csv(folder.path());
+    let plain = std::fs::read_to_string(folder.path().join("samples.csv")).unwrap();
+    let mark = |(index, line): (usize, &str)| match index {
+        0 => format!("{line},position_reckoned"),
+        1..=5 => format!("{line},true"),
+        6..=20 => format!("{line},false"),
+        _ => format!("{line},"),
+    };
+    let marked: Vec<String> = plain.lines().enumerate().map(mark).collect();
+    std::fs::write(folder.path().join("marked.csv"), marked.join("\n")).unwrap();
+    let kept = plain.lines().enumerate();
+    let kept = kept.filter(|(index, _)| !(1..=5).contains(index));
+    let kept: Vec<&str> = kept.map(|(_, line)| line).collect();
+    std::fs::write(folder.path().join("kept.csv"), kept.join("\n")).unwrap();
+    let fit = |file: &str| -> Model {
+        let printed = good(&run(folder.path(), &["fit", file, "--json"]));
+        serde_json::from_str(&printed).unwrap()
+    };
+    let (marked, kept) = (fit("marked.csv"), fit("kept.csv"));
+    assert_eq!(marked.samples_rejected, kept.samples_rejected + 5);
+    let without_count = Model {
+        samples_rejected: kept.samples_rejected,
+        ..marked
+    };
+    assert_eq!(without_count, kept);
+    let analysed = good(&run(folder.path(), &["analyse", "marked.csv"]));
+    let analysed: serde_json::Value = serde_json::from_str(&analysed).unwrap();
+    let samples = analysed["samples"].as_array().unwrap();
+    let reckoned = samples
+        .iter()
+        .filter(|sample| sample["reason"] == "gnss_interference");
+    assert_eq!(reckoned.count(), 5);
 }

@@ -9,7 +9,7 @@ use binnacle_platform::error::{Error, Result};
 /// samples twice.
 const ROBUST_WEIGHT: &str = "robust_weight";
 /// Later columns stand at the end, so that the others keep their places.
-const COLUMNS: [&str; 25] = [
+const COLUMNS: [&str; 26] = [
     "time",
     "lat",
     "lon",
@@ -35,6 +35,7 @@ const COLUMNS: [&str; 25] = [
     "temperature_c",
     "gyro_source",
     "satellite_source",
+    "position_reckoned",
 ];
 
 pub(super) fn csv(samples: &[SampleDiagnostic]) -> Result<Response> {

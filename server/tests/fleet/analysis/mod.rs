@@ -351,9 +351,11 @@ async fn course_roll_temperature_and_source_are_exported(server: TestServer) {
         "temperature_c",
         "gyro_source",
         "satellite_source",
+        "position_reckoned",
     ];
     assert!(rows[0].ends_with(&columns), "{:?}", rows[0]);
-    assert!(rows[1].ends_with(&[""; 6]), "{:?}", rows[1]);
+    let unknown = ["", "", "", "", "", "", "false"];
+    assert!(rows[1].ends_with(&unknown), "{:?}", rows[1]);
     let course = rows[10][19].parse::<f64>().unwrap();
     let drift = wrap_180(course - rows[10][4].parse::<f64>().unwrap());
     assert!((drift - 3.0).abs() < 0.6, "{drift}");

@@ -62,6 +62,9 @@ pub struct CsvRow {
     pub spread_deg: Option<f64>,
     /// `weight` beside the other rows; 1 when absent.
     pub weight: Option<f64>,
+    /// `position_reckoned`: set if the position is by dead reckoning, under interference with GNSS.
+    /// No estimate uses the row.
+    pub position_reckoned: bool,
 }
 
 /// Error of a table.
@@ -146,7 +149,8 @@ pub fn check_columns<'a>(header: impl IntoIterator<Item = &'a str>) -> Result<()
 
 /// Makes readings of rows, in order of time and then of everything else, so that the order
 /// of the rows changes nothing. Identical rows count once, with a time or without. Where a
-/// row has both a field and a place, the field as given is used.
+/// row has both a field and a place, the field as given is used. Rows whose position is by dead
+/// reckoning are checked and left out.
 ///
 /// # Errors
 /// Fails at the first row and column that are empty or invalid. A row without any reference
@@ -156,9 +160,13 @@ pub fn readings_from_csv(
     gyro_speed_error: GyroSpeedError,
 ) -> Result<Vec<HeadingReading>, CsvRowError> {
     let indexed = rows.iter().enumerate();
-    let mut readings: Vec<HeadingReading> = indexed
-        .map(|(index, row)| reading(row, index, gyro_speed_error))
-        .collect::<Result<_, _>>()?;
+    let mut readings = Vec::with_capacity(rows.len());
+    for (index, row) in indexed {
+        let reading = reading(row, index, gyro_speed_error)?;
+        if !row.position_reckoned {
+            readings.push(reading);
+        }
+    }
     readings.sort_by(in_order);
     readings.dedup_by(|a, b| in_order(a, b).is_eq());
     Ok(readings)
