@@ -83,6 +83,23 @@ fn second_with(offset_s: i64, lead_deg: f64) -> Vec<u8> {
     out
 }
 
+/// Frames the text between `$` and `*` as a sentence.
+pub(crate) fn sentence(body: &str) -> Vec<u8> {
+    let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
+    format!("${body}*{sum:02X}\r\n").into_bytes()
+}
+
+/// Sentences of one second, without some and with others.
+pub(crate) fn changed(offset_s: i64, without: &[&str], with: &[String]) -> Vec<u8> {
+    let second = String::from_utf8(second(offset_s)).unwrap();
+    let kept = second
+        .lines()
+        .filter(|line| !without.iter().any(|start| line.starts_with(start)));
+    let kept = kept.flat_map(|line| format!("{line}\r\n").into_bytes());
+    let more = with.iter().flat_map(|body| sentence(body));
+    kept.chain(more).collect()
+}
+
 /// Yaw about the course, which cancels out in ten seconds.
 fn yaw_deg(offset_s: i64) -> f64 {
     0.8 * (std::f64::consts::TAU * offset_s as f64 / 10.0).sin()

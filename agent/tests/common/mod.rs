@@ -79,3 +79,16 @@ pub(crate) async fn fetch(address: std::net::SocketAddr, path: &str) -> String {
     let response = reqwest::get(format!("http://{address}{path}")).await;
     response.unwrap().text().await.unwrap()
 }
+
+/// Fetches the status.
+pub(crate) async fn status(running: &agent::Running) -> serde_json::Value {
+    let text = fetch(running.page, "/api/status").await;
+    serde_json::from_str(&text).unwrap()
+}
+
+/// Returns the status once the ship's clock shows the last second.
+pub(crate) async fn at_end(running: &agent::Running, seconds: i64) -> serde_json::Value {
+    let end = Timestamp::from_micros((bridge::START_S + seconds - 1) * 1_000_000);
+    let end = end.unwrap().to_string();
+    status_when(running, |status| status["ship_time"] == end.as_str()).await
+}
