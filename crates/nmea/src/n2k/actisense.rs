@@ -25,7 +25,7 @@ const TIME_RECORD: u8 = 3;
 /// Microseconds from 1601 to 1970.
 const FROM_1601_MICROS: i64 = 11_644_473_600_000_000;
 /// Bytes of a recording in which the first message is looked for.
-const SEARCHED_BYTES: usize = 1024;
+pub const SEARCHED_BYTES: usize = 1024;
 /// Longest frame: command, length, content of 255 bytes, checksum.
 const MOST_BYTES: usize = 258;
 
@@ -53,7 +53,8 @@ enum State {
 }
 
 impl Decoder {
-    /// Makes the decoder of a recording by its first bytes; `None` if they are of no such one.
+    /// Makes the decoder of a recording by its first [`SEARCHED_BYTES`], or all if it is shorter;
+    /// `None` if they are of no such one.
     pub fn of_recording(first: &[u8]) -> Option<Decoder> {
         if first.starts_with(&[ESC, SOH]) {
             return Some(Decoder::of_ebl());

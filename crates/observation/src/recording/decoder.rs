@@ -43,9 +43,10 @@ pub struct RollOver {
 /// Decoder of one recording.
 #[derive(Debug)]
 pub struct Decoder {
+    /// First bytes, until there are enough to tell what kind of recording it is.
+    first: Option<Vec<u8>>,
     /// Decoder of a recording without lines; none for one with lines.
     binary: Option<actisense::Decoder>,
-    has_begun: bool,
     lines: NumberedLines,
     reader: LineReader,
 }
@@ -77,8 +78,8 @@ impl Decoder {
     /// Creates a decoder of a recording that a survey has planned.
     pub fn new(input: Arc<str>, plan: Plan) -> Decoder {
         Decoder {
+            first: Some(Vec::new()),
             binary: None,
-            has_begun: false,
             lines: NumberedLines::default(),
             reader: LineReader {
                 deltas: DeltaReader::of_recording(Arc::clone(&input)),
@@ -101,9 +102,24 @@ impl Decoder {
 
     /// Decodes the lines that a chunk completes.
     pub fn chunk(&mut self, chunk: &[u8]) {
-        if !std::mem::replace(&mut self.has_begun, true) {
-            self.binary = actisense::Decoder::of_recording(chunk);
+        let Some(first) = &mut self.first else {
+            return self.decode(chunk);
+        };
+        first.extend_from_slice(chunk);
+        if first.len() >= actisense::SEARCHED_BYTES {
+            self.begin();
         }
+    }
+
+    /// Decodes the first bytes.
+    fn begin(&mut self) {
+        if let Some(first) = self.first.take() {
+            self.binary = actisense::Decoder::of_recording(&first);
+            self.decode(&first);
+        }
+    }
+
+    fn decode(&mut self, chunk: &[u8]) {
         let reader = &mut self.reader;
         match &mut self.binary {
             Some(binary) => binary.push(chunk, |stamp, message| {
@@ -120,6 +136,7 @@ impl Decoder {
 
     /// Decodes the last line, whose end may be missing.
     pub fn finish(&mut self) {
+        self.begin();
         let reader = &mut self.reader;
         self.lines.finish(|number, line| reader.line(number, line));
     }

@@ -52,6 +52,30 @@ fn headings(recorded: &[Recorded]) -> Vec<(Option<Timestamp>, f64)> {
     headings.collect()
 }
 
+/// A heading as an Actisense gateway sends it.
+fn actisense_heading() -> Vec<u8> {
+    let mut frame = vec![0x93, 19, 2, 0x12, 0xf1, 1, 255, 204, 0, 0, 0, 0, 8];
+    frame.extend([0xff, 0x2b, 0x46, 0xff, 0x7f, 0xff, 0x7f, 0xfd]);
+    let sum = frame.iter().fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
+    frame.push(sum.wrapping_neg());
+    assert!(!frame.contains(&0x10));
+    [&[0x10, 0x02], &frame[..], &[0x10, 0x03]].concat()
+}
+
+#[test]
+fn the_kind_of_a_recording_does_not_depend_on_its_chunks() {
+    // The gateway's own text comes first.
+    let bytes = [b"gateway starts\n".to_vec(), actisense_heading()].concat();
+    let (whole, _) = read_with(&bytes, Plan::default());
+    assert_eq!(headings(&whole).len(), 1);
+    for length in [1, 7, 16] {
+        let mut decoder = decoder::Decoder::new("log".into(), Plan::default());
+        bytes.chunks(length).for_each(|chunk| decoder.chunk(chunk));
+        decoder.finish();
+        assert_eq!(decoder.take_recorded(), whole, "{length}");
+    }
+}
+
 #[test]
 fn lines_carry_the_time_that_stands_before_them() {
     let text = format!(
