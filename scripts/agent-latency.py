@@ -56,7 +56,7 @@ def main():
 udp = "{bridge[0]}:{bridge[1]}"
 [output]
 udp = "127.0.0.1:{receiver.getsockname()[1]}"
-interval_s = 0.1
+interval_s = 0.05
 """
     sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     sent = []

@@ -13,6 +13,7 @@ processor. The exit code is 1 if the agent died.
 import json
 import math
 import os
+import random
 import socket
 import sys
 import threading
@@ -31,9 +32,11 @@ def second(now):
     clock, date = time.strftime("%H%M%S", at), time.strftime("%d%m%y", at)
     yield sentence(f"GPRMC,{clock}.00,A,4330.000,N,00300.000,W,12.0,100.0,{date},,,A")
     for tenth in range(10):
-        yield sentence(f"HCHDG,{heading - 3:.1f},,,,")
-        yield sentence(f"HETHS,{heading:.1f},A")
-        yield sentence(f"GPTHS,{heading + 0.3:.1f},A")
+        # Each has noise of its own: what shares the compass's is no reference.
+        noise = [random.gauss(0, 0.2) for _ in range(3)]
+        yield sentence(f"HCHDG,{heading - 3 + noise[0]:.1f},,,,")
+        yield sentence(f"HETHS,{heading + noise[1]:.1f},A")
+        yield sentence(f"GPTHS,{heading + 0.3 + noise[2]:.1f},A")
         yield sentence("TIROT,0.5,A")
         if tenth:
             yield sentence("IIXDR,A,1.5,D,ROLL")
