@@ -19,10 +19,10 @@ pub(super) fn load_with_files(path: &Path) -> Result<Config, BadInput> {
     let config = Config::load(path)?;
     let uplink = &config.uplink;
     ServerClient::new(uplink.pinned_ca.as_deref(), &uplink.connection_policy())
-        .map_err(|error| wrong(path, &["uplink", "pinned_ca"], error))?;
+        .map_err(|error| wrong(path, &["uplink", "pinned_ca"], &error))?;
     for (name, input) in &config.inputs {
         let of_input = |keys: &[&str], error: io::Error| {
-            wrong(path, &[&["inputs", name], keys].concat(), error.into())
+            wrong(path, &[&["inputs", name], keys].concat(), &error.into())
         };
         match input {
             InputConfig::File(file) => {
@@ -42,14 +42,14 @@ pub(super) fn load_with_files(path: &Path) -> Result<Config, BadInput> {
 pub(super) fn load_to_run(path: &Path) -> Result<Config, BadInput> {
     let config = load_with_files(path)?;
     fs::create_dir_all(&config.data_dir)
-        .map_err(|error| wrong(path, &["data_dir"], error.into()))?;
+        .map_err(|error| wrong(path, &["data_dir"], &error.into()))?;
     if let Some(modem) = &config.modem {
         FileModem::open(modem.directory())
-            .map_err(|error| wrong(path, &["modem", "directory"], error.into()))?;
+            .map_err(|error| wrong(path, &["modem", "directory"], &error.into()))?;
     }
     Ok(config)
 }
 
-fn wrong(path: &Path, keys: &[&str], error: anyhow::Error) -> BadInput {
+fn wrong(path: &Path, keys: &[&str], error: &anyhow::Error) -> BadInput {
     ConfigError::of_field(path, keys, format!("{error:#}")).into()
 }

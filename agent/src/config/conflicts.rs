@@ -10,6 +10,7 @@ use binnacle_output::config::OutputConfig;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::net::SocketAddr;
+use toml::Spanned;
 
 /// Fails when settings contradict each other.
 pub(super) fn check(config: &Config) -> Result<(), Problem> {
@@ -205,7 +206,7 @@ fn check_keys(
     index: usize,
     source: &SourceConfig,
 ) -> Result<(), Problem> {
-    let named = source.input.as_ref().map(|name| name.get_ref());
+    let named = source.input.as_ref().map(Spanned::get_ref);
     let Some((name, input)) = named.and_then(|name| config.inputs.get_key_value(name)) else {
         return Ok(());
     };

@@ -20,7 +20,7 @@ mod reckoning;
 
 pub(crate) use reckoning::{ReckonedPlace, offset};
 
-use super::roles::{Instrument, ReferenceHeading, Refusal, Signal};
+use super::roles::{GnssSource, Instrument, ReferenceHeading, Refusal, Signal};
 use binnacle_compass::angle::TrueHeading;
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
@@ -37,14 +37,6 @@ const FRESH_S: f64 = 15.0;
 const SILENT_S: f64 = 15.0;
 /// Receivers that are judged: senders of datagrams may be many.
 const MAX_RECEIVERS: usize = 16;
-
-/// Receiver that a signal comes from.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GnssSource<'a> {
-    pub(crate) source: &'a Source,
-    /// Selection of the position that it matches, 0 being the best.
-    pub(crate) rank: usize,
-}
 
 /// Interference with the receivers, as it goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,7 +170,7 @@ impl GnssGuard {
 
     /// Returns the ship's place now.
     pub(crate) fn place(&self) -> Option<ReckonedPlace> {
-        self.ship().map(|reckoning| reckoning.place())
+        self.ship().map(Reckoning::place)
     }
 
     /// Describes the receivers that are not trusted while another one is used.

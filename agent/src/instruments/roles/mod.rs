@@ -6,7 +6,6 @@
 //! of the compass, and is no reference.
 
 use super::gnss_clock::{GnssClock, Step};
-use super::gnss_guard::GnssSource;
 use super::role::{Moment, Role, Use};
 use crate::config::{RolesConfig, SilenceConfig};
 use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
@@ -83,6 +82,14 @@ pub(crate) enum Refusal {
 pub(crate) struct ReferenceHeading {
     pub(crate) heading: TrueHeading,
     pub(crate) source: SourceId,
+}
+
+/// Receiver that a signal comes from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GnssSource<'a> {
+    pub(crate) source: &'a Source,
+    /// Selection of the position that it matches, 0 being the best.
+    pub(crate) rank: usize,
 }
 
 /// The vessel's instruments and its clock.
