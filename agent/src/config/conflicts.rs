@@ -145,7 +145,9 @@ fn input_use(name: &str, input: &InputConfig) -> Use {
         | InputConfig::Ydwg(YdwgConfig::Tcp(server)) => {
             of_key("tcp", Place::Source(server.as_str().to_owned()))
         }
-        InputConfig::Ydwg(YdwgConfig::Udp(address)) => of_key("udp", Place::UdpPort(*address)),
+        InputConfig::Ydwg(YdwgConfig::Udp { address, .. }) => {
+            of_key("udp", Place::UdpPort(*address))
+        }
         InputConfig::File(path) => of_kind(Place::Source(path.display().to_string())),
     }
 }
@@ -219,7 +221,7 @@ fn check_keys(
     );
     let is_datagrams = matches!(
         input,
-        InputConfig::Udp(_) | InputConfig::Multicast(_) | InputConfig::Ydwg(YdwgConfig::Udp(_))
+        InputConfig::Udp(_) | InputConfig::Multicast(_) | InputConfig::Ydwg(YdwgConfig::Udp { .. })
     );
     let is_signalk = matches!(input, InputConfig::SignalK(_) | InputConfig::File(_));
     let wrong = [
