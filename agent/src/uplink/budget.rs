@@ -371,15 +371,15 @@ mod tests {
         let mut now = start;
         let mut spent = 5_300.0;
         while now.monotonic < start.monotonic + HOUR * 24 * 30 {
-            now = match next.delay_for(Priority::Samples, 500, Connection::New, now) {
-                Some(delay) => after(now, delay),
-                None => {
-                    let expected = next.charge(500, Connection::New, now);
-                    next.settle(expected, counted(900, Some(4_400)));
-                    spent += 5_300.0;
-                    after(now, HOUR * 24)
-                }
-            };
+            let delay = next.delay_for(Priority::Samples, 500, Connection::New, now);
+            if let Some(delay) = delay {
+                now = after(now, delay);
+                continue;
+            }
+            let expected = next.charge(500, Connection::New, now);
+            next.settle(expected, counted(900, Some(4_400)));
+            spent += 5_300.0;
+            now = after(now, HOUR * 24);
         }
         assert!((80_000.0..=96_000.0).contains(&spent), "{spent}");
     }

@@ -4,10 +4,10 @@
 //!
 //! - Everything counts that a socket takes or gives: proxy, TLS handshake with its certificates,
 //!   heads and bodies, whether the request succeeds or not.
-//! - The headers of packets are estimated, since a socket does not show them: those of full segments
-//!   and of an acknowledgement for every two (RFC 9293, 3.8.6.3), with time stamps (RFC 7323).
-//!   Repetitions of lost packets are not seen.
+//! - The packets are estimated, since a socket does not show them: full segments, and an
+//!   acknowledgement for every two (RFC 9293, 3.8.6.3). Repetitions of lost packets are not seen.
 
+use rustix::net::sockopt;
 use socket2::SockRef;
 use std::io;
 use std::pin::Pin;
@@ -16,11 +16,12 @@ use std::task::{Context, Poll};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 
-/// Bytes of an IPv4 header (RFC 791, 3.1) and of an IPv6 header (RFC 8200, 3).
-const IPV4_BYTES: u64 = 20;
-const IPV6_BYTES: u64 = 40;
-/// Bytes of a TCP header (RFC 9293, 3.1) with time stamps (RFC 7323, 3.2), which most hosts send.
-const TCP_BYTES: u64 = 20 + 12;
+/// Bytes of the headers of IPv4 (RFC 791, 3.1) and TCP (RFC 9293, 3.1), and of IPv6 (RFC 8200, 3) and
+/// TCP.
+const IPV4_TCP_BYTES: u64 = 20 + 20;
+const IPV6_TCP_BYTES: u64 = 40 + 20;
+/// Bytes of the time stamps in each header (RFC 7323, 3.2 and appendix A), where both hosts send them.
+const TIMESTAMP_BYTES: u64 = 12;
 /// Bytes of further options in the first segment of each side: segment size, window, selective
 /// acknowledgements.
 const SYN_OPTIONS: u64 = 8;
@@ -71,7 +72,7 @@ impl Meter {
 
     /// Counts an attempt to connect that failed.
     pub(super) fn count_failed_attempt(&self) {
-        let packet = IPV4_BYTES + TCP_BYTES + SYN_OPTIONS;
+        let packet = IPV4_TCP_BYTES + TIMESTAMP_BYTES + SYN_OPTIONS;
         self.update(|counts| counts.bytes += UNANSWERED_PACKETS * packet);
     }
 
@@ -104,12 +105,10 @@ impl MeteredStream {
     /// Counts an open connection from its first packet on. The packets that will close it are
     /// counted at once, since nobody waits for them.
     pub(super) fn new(tcp: TcpStream, meter: Meter) -> MeteredStream {
-        let is_v6 = tcp.peer_addr().is_ok_and(|address| address.is_ipv6());
-        let ip = if is_v6 { IPV6_BYTES } else { IPV4_BYTES };
-        let header_bytes = ip + TCP_BYTES;
         let segment_bytes = SockRef::from(&tcp)
             .tcp_mss()
             .map_or(SEGMENT_BYTES, u64::from);
+        let header_bytes = header_bytes(&tcp, segment_bytes);
         meter.update(|counts| {
             counts.open += 1;
             counts.bytes += (OPENING_PACKETS + CLOSING_PACKETS) * header_bytes + 2 * SYN_OPTIONS;
@@ -128,6 +127,21 @@ impl MeteredStream {
         let packets = segments + segments.div_ceil(2);
         self.meter
             .update(|counts| counts.bytes += bytes + packets * self.header_bytes);
+    }
+}
+
+/// Returns the bytes of a packet's headers. The largest packet less its data shows whether they have
+/// time stamps, unless the other side takes smaller segments than the way: then they count.
+fn header_bytes(tcp: &TcpStream, segment_bytes: u64) -> u64 {
+    let is_v6 = tcp.peer_addr().is_ok_and(|address| address.is_ipv6());
+    let (bare, largest) = if is_v6 {
+        (IPV6_TCP_BYTES, sockopt::ipv6_mtu(tcp))
+    } else {
+        (IPV4_TCP_BYTES, sockopt::ip_mtu(tcp))
+    };
+    match largest {
+        Ok(largest) if u64::from(largest) == bare + segment_bytes => bare,
+        _ => bare + TIMESTAMP_BYTES,
     }
 }
 

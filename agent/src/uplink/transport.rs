@@ -85,16 +85,13 @@ impl Transport {
         let is_https = uri.scheme() == Some(&Scheme::HTTPS);
         let proxy = self.proxies.intercept(&uri).filter(|_| is_https);
         let connecting = async {
-            match proxy {
-                Some(proxy) => {
-                    let tunnel = tunnel(&proxy, tcp)?;
-                    let https = HttpsConnector::from((tunnel, self.tls.clone()));
-                    https.oneshot(uri).await
-                }
-                None => {
-                    let https = HttpsConnector::from((tcp, self.tls.clone()));
-                    https.oneshot(uri).await
-                }
+            if let Some(proxy) = proxy {
+                let tunnel = tunnel(&proxy, tcp)?;
+                let https = HttpsConnector::from((tunnel, self.tls.clone()));
+                https.oneshot(uri).await
+            } else {
+                let https = HttpsConnector::from((tcp, self.tls.clone()));
+                https.oneshot(uri).await
             }
         };
         let stream = timeout(CONNECT_TIMEOUT, connecting)
