@@ -72,7 +72,7 @@ bench: setup ## Run the benchmarks of BENCHMARKS.md
 bench-link: setup ## Count the bytes of a simulated month over a satellite, by profile
 	$(CARGO) build --locked --workspace
 	BINNACLE_LINK_DAYS=30 $(CARGO) test --locked --workspace --test satellite \
-		packets_and_all -- --nocapture --test-threads=1 | grep 'bytes a day'
+		_cost -- --nocapture --test-threads=1 | grep 'bytes a day'
 
 bench-latency: setup ## Time compass readings through the agent, from datagram to datagram (SECONDS=120)
 	$(CARGO) build --release --locked -p binnacle-agent
