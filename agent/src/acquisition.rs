@@ -2,13 +2,13 @@
 //! readings.
 
 use crate::config::{RolesConfig, SilenceConfig};
-use crate::instruments::{
-    ClockCheckpoint, GnssGuard, HeardSources, Independence, Interference, OwnHeadings, OwnOutput,
-    Readings, ReckonedPlace, Roles, SentHeading, Signal, SourceReport, StatedClocks,
-};
 use crate::sampler::{Exclusion, Sampler};
 use binnacle_compass::angle::TrueHeading;
 use binnacle_compass::time::Timestamp;
+use binnacle_instruments::{
+    ClockCheckpoint, GnssGuard, HeardSources, Independence, Interference, OwnHeadings, OwnOutput,
+    Readings, ReckonedPlace, Roles, SentHeading, Signal, SourceReport, StatedClocks,
+};
 use binnacle_observation::{Observation, Reading, is_recorded_time};
 use binnacle_wire::messages::Settings;
 use std::time::Duration;

@@ -1,5 +1,5 @@
 //! The computer's clock, for the page and the pauses of the uplink only. Samples carry GNSS time
-//! (see `crate::instruments`).
+//! (see `binnacle_instruments`).
 
 use binnacle_compass::time::Timestamp;
 

@@ -3,7 +3,6 @@
 //!
 //! Nothing is invented: a value that cannot be computed is absent, with the reason in words.
 
-use crate::instruments::{ReckonedPlace, offset};
 use crate::weak_field::MIN_H_NT;
 use binnacle_compass::angle::{
     CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation, wrap_180,
@@ -11,6 +10,7 @@ use binnacle_compass::angle::{
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
+use binnacle_instruments::{ReckonedPlace, offset};
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink};
 use serde::{Deserialize, Serialize};
 

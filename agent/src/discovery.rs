@@ -4,7 +4,7 @@
 //! compass is one and not several, and a true heading of the compass's own device is left out.
 
 use crate::acquisition::Acquisition;
-use crate::instruments::{HeardSource, SourceReport};
+use binnacle_instruments::{HeardSource, SourceReport};
 use binnacle_observation::{Reading, Source};
 use serde::Serialize;
 use std::fmt::Write;

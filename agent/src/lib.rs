@@ -8,8 +8,6 @@ mod run;
 
 mod config;
 
-mod instruments;
-
 mod acquisition;
 mod alert;
 mod discovery;

@@ -5,7 +5,7 @@
 //! minute.
 
 use super::record::AlertRecord;
-use crate::instruments::AGENT_TALKER;
+use binnacle_instruments::AGENT_TALKER;
 use binnacle_output::frame_sentence;
 use binnacle_wire::alert::ShipAlertState;
 use std::time::Duration;

@@ -1,7 +1,7 @@
 //! `[alert]`: thresholds of the alert that compass and gyro disagree, and of the heading-difference
 //! alarm.
 
-use super::limits::PositiveSeconds;
+use binnacle_instruments::config::PositiveSeconds;
 use serde::Deserialize;
 
 /// Thresholds of the agent's own alerts.

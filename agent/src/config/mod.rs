@@ -10,8 +10,6 @@ mod error;
 mod limits;
 mod pin;
 mod profile;
-mod roles;
-mod silence;
 mod uplink;
 
 pub(crate) use alert::AlertConfig;
@@ -22,15 +20,14 @@ pub(crate) use pin::Pin;
 #[cfg(test)]
 pub(crate) use profile::max_burst_batch_bytes;
 pub(crate) use profile::{ConnectionPolicy, Profile, UploadPlan};
-pub(crate) use roles::{RolesConfig, SourceConfig};
-pub(crate) use silence::SilenceConfig;
 pub(crate) use uplink::{ModemConfig, UplinkConfig};
 
 use binnacle_input::InputConfig;
+#[cfg(test)]
+use binnacle_instruments::config::PositiveSeconds;
+use binnacle_instruments::config::{RolesConfig, SilenceConfig};
 use binnacle_output::config::OutputConfig;
 use error::{Place, Problem};
-#[cfg(test)]
-use limits::PositiveSeconds;
 use limits::{RawLogLimit, SpoolLimit};
 use serde::Deserialize;
 use std::collections::BTreeMap;

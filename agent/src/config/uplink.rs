@@ -1,8 +1,8 @@
 //! `[uplink]` and `[modem]`: the connection to the server.
 
 use super::error::Problem;
-use super::limits::PositiveSeconds;
 use super::profile::{ConnectionPolicy, EXCHANGE_TIMEOUT, Profile, UploadPlan};
+use binnacle_instruments::config::PositiveSeconds;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -1,9 +1,9 @@
 //! Readings of one second.
 
-use crate::instruments::{Latest, Readings};
 use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
+use binnacle_instruments::{Latest, Readings};
 use std::time::Duration;
 use tokio::time::Instant;
 

@@ -3,7 +3,7 @@
 use super::Agent;
 use crate::alert::{Comparison, DifferenceReference};
 use crate::corrected_heading::{CorrectionInputs, correct};
-use crate::instruments::Latest;
+use binnacle_instruments::Latest;
 use binnacle_nmea::sentence::Acn;
 use binnacle_observation::{Observation, Reading};
 use binnacle_output::{AlertCondition, AlertConditions, Trigger};

@@ -3,9 +3,9 @@
 use super::{Agent, CHANNEL_CAPACITY};
 use crate::alert::AlertRecord;
 use crate::corrected_heading::{self, CardRow, CorrectedHeading, CorrectionInputs};
-use crate::instruments::{Latest, SentHeading};
 use crate::status::ModelStatus;
 use crate::{card_invalidation, clock};
+use binnacle_instruments::{Latest, SentHeading};
 use binnacle_output::config::SentenceKind;
 use binnacle_output::{Heading, Line, Quality, Trigger};
 use binnacle_wire::messages::CardWithdrawn;
@@ -166,10 +166,10 @@ mod tests {
     use super::*;
     use crate::corrected_heading::correct;
     use crate::corrected_heading::tests::model;
-    use crate::instruments::ReckonedPlace;
     use binnacle_compass::angle::CompassHeading;
     use binnacle_compass::position::Position;
     use binnacle_compass::time::Timestamp;
+    use binnacle_instruments::ReckonedPlace;
     use binnacle_nmea::Data;
     use binnacle_nmea::sentence::ThsMode;
     use binnacle_output::HeadingSentences;

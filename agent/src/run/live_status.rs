@@ -2,8 +2,8 @@
 
 use super::Agent;
 use crate::alert::{AlertRecord, HeadingDifference};
-use crate::instruments::Latest;
 use crate::status::{InputReport, Status, offline_status};
+use binnacle_instruments::Latest;
 use tokio::time::Instant;
 
 impl Agent {

@@ -2,11 +2,11 @@
 
 use super::Agent;
 use crate::clock;
-use crate::instruments::ClockCheckpoint;
 use crate::sampler::Tally;
 use crate::spool::{MAX_PENDING, Seal, is_disk_full};
 use crate::uplink::LinkState;
 use binnacle_compass::time::Timestamp;
+use binnacle_instruments::ClockCheckpoint;
 use binnacle_wire::messages::Settings;
 use tokio::time::Instant;
 

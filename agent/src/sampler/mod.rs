@@ -27,12 +27,12 @@ pub(crate) use exclusion::Exclusion;
 pub(crate) use outcome::{Outcome, Tally};
 pub(crate) use sample_builder::{WINDOW_S, Window, median};
 
-use crate::instruments::{Instrument, Signal};
 use crate::weak_field::is_weak;
 use binnacle_compass::angle::{wrap_180, wrap_360};
 use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
+use binnacle_instruments::{Instrument, Signal};
 use binnacle_wire::messages::Settings;
 use details::DetailReadings;
 use sample_builder::SampleBuilder;

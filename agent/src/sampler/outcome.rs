@@ -1,6 +1,6 @@
 //! Outcomes of ten-second windows, and their counts.
 
-use crate::instruments::Refusal;
+use binnacle_instruments::Refusal;
 use std::collections::BTreeMap;
 
 /// Acceptance, or the first reason for rejection.

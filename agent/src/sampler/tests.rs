@@ -1,9 +1,9 @@
 //! The sampler on small simulated voyages.
 
 use super::*;
-use crate::instruments::ReferenceHeading;
 use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
 use binnacle_compass::sample::SourceId;
+use binnacle_instruments::ReferenceHeading;
 use proptest::prelude::*;
 
 const START_S: i64 = 1_700_000_000;

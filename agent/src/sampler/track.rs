@@ -1,8 +1,8 @@
 //! Heading of one instrument over the windows, unwound across north.
 
-use crate::instruments::Refusal;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::sample::SourceId;
+use binnacle_instruments::Refusal;
 
 /// Heading in one window.
 #[derive(Clone, Copy, Debug, PartialEq)]

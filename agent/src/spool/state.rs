@@ -7,9 +7,9 @@ use super::keys::{
     WITHDRAWN,
 };
 use crate::alert::{AlertRecord, HeadingDifference};
-use crate::instruments::ClockCheckpoint;
 use crate::sampler::Exclusion;
 use binnacle_compass::time::Timestamp;
+use binnacle_instruments::ClockCheckpoint;
 use binnacle_wire::messages::{CardWithdrawn, Downlink, ModelDownlink, Settings};
 use sqlx::SqliteConnection;
 

@@ -8,7 +8,6 @@ pub(crate) use offline::offline_status;
 
 use crate::alert::{AlertStatus, HeadingDifferenceStatus};
 use crate::corrected_heading::{CardRow, CorrectedHeading};
-use crate::instruments::{Interference, SourceReport};
 use crate::raw_log::RawLogStatus;
 use crate::sampler::Exclusion;
 use crate::spool::{BudgetAccount, SpoolStatus};
@@ -18,6 +17,7 @@ use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 use binnacle_input::InputStatus;
+use binnacle_instruments::{Interference, SourceReport};
 use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -234,13 +234,13 @@ mod tests {
     use super::*;
     use crate::config::Profile;
     use crate::corrected_heading::CorrectedHeading;
-    use crate::instruments::SourceReport;
     use crate::sampler::Exclusion;
     use crate::spool::{BudgetAccount, SpoolStatus};
     use crate::status::InterferenceStatus;
     use binnacle_compass::model::ReferenceGrade;
     use binnacle_compass::position::Position;
     use binnacle_compass::time::Timestamp;
+    use binnacle_instruments::SourceReport;
 
     #[test]
     fn the_text_says_what_is_wrong() {

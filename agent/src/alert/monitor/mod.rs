@@ -14,10 +14,10 @@ mod verdict;
 use super::record::AlertRecord;
 use crate::config::AlertConfig;
 use crate::corrected_heading::{CorrectionInputs, predict};
-use crate::instruments::ReckonedPlace;
 use crate::sampler::{WINDOW_S, Window};
 use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::time::Timestamp;
+use binnacle_instruments::ReckonedPlace;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink};
 use departures::{

@@ -3,10 +3,10 @@
 use super::*;
 use crate::config::GyroError;
 use crate::corrected_heading::predict;
-use crate::instruments::ReckonedPlace;
 use crate::sampler::Details;
 use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::position::Position;
+use binnacle_instruments::ReckonedPlace;
 
 mod verdict;
 

@@ -19,15 +19,15 @@ const MAX_VALUES: usize = 4;
 
 /// Sources by what their paths name.
 #[derive(Debug, Default)]
-pub(crate) struct HeardSources {
+pub struct HeardSources {
     sources: HashMap<Source, HeardSource>,
 }
 
 /// A source and what it sends.
 #[derive(Debug)]
-pub(crate) struct HeardSource {
+pub struct HeardSource {
     /// Latest reading of each kind.
-    pub(crate) values: Vec<Observation>,
+    pub values: Vec<Observation>,
     heard: Instant,
     /// Age of the latest reading; `None` while it is unknown.
     age: Option<Duration>,
@@ -37,47 +37,47 @@ pub(crate) struct HeardSource {
 
 /// Source as the page, `status` and `discover` show it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct SourceReport {
-    pub(crate) input: String,
-    pub(crate) talker: String,
-    pub(crate) sentence: String,
+pub struct SourceReport {
+    pub input: String,
+    pub talker: String,
+    pub sentence: String,
     /// Signal K: `$source`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) source: Option<String>,
+    pub source: Option<String>,
     /// TAG block: `s:`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) sfi: Option<String>,
+    pub sfi: Option<String>,
     /// Datagrams: address of the sender.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) sender: Option<String>,
+    pub sender: Option<String>,
     /// NMEA 2000: address.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) n2k_address: Option<u8>,
+    pub n2k_address: Option<u8>,
     /// NMEA 2000: NAME.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) n2k_name: Option<String>,
+    pub n2k_name: Option<String>,
     /// Readings a second, from two readings on.
-    pub(crate) rate_hz: Option<f64>,
+    pub rate_hz: Option<f64>,
     /// Latest values.
-    pub(crate) last: String,
+    pub last: String,
     /// Seconds since it was heard.
-    pub(crate) heard_s_ago: f64,
+    pub heard_s_ago: f64,
     /// Age of its latest reading when that arrived, seconds; none while it is unknown.
-    pub(crate) age_s: Option<f64>,
+    pub age_s: Option<f64>,
     /// Roles in which it serves.
     #[serde(default)]
-    pub(crate) serves: Vec<String>,
+    pub serves: Vec<String>,
     /// Roles that select it, while another source serves.
     #[serde(default)]
-    pub(crate) stands_by: Vec<String>,
+    pub stands_by: Vec<String>,
     /// Set if it repeats the agent's own output.
     #[serde(default)]
-    pub(crate) own_output: bool,
+    pub own_output: bool,
 }
 
 impl HeardSources {
     /// Records an observation at a time in seconds, from which rates follow.
-    pub(crate) fn note(
+    pub fn note(
         &mut self,
         seen: &Observation,
         heard: Instant,
@@ -103,7 +103,7 @@ impl HeardSources {
     }
 
     /// Returns the sources in the order of their names.
-    pub(crate) fn sorted(&self) -> Vec<(&Source, &HeardSource)> {
+    pub fn sorted(&self) -> Vec<(&Source, &HeardSource)> {
         let mut sources: Vec<_> = self.sources.iter().collect();
         sources.sort_by(|(one, _), (other, _)| {
             let by_device = one.device_order(other);
@@ -140,35 +140,35 @@ impl HeardSource {
     }
 
     /// Marks whether the latest reading was the agent's own output.
-    pub(crate) fn mark_own_output(&mut self, is_own_output: bool) {
+    pub fn mark_own_output(&mut self, is_own_output: bool) {
         self.is_own_output = is_own_output;
     }
 
     /// Returns whether the latest reading was new when it arrived, rather than a server's cached
     /// one.
-    pub(crate) fn is_live(&self) -> bool {
+    pub fn is_live(&self) -> bool {
         self.age.is_some_and(|age| age <= LIVE_WITHIN)
     }
 
     /// Returns whether the latest reading was the agent's own output.
-    pub(crate) fn is_own_output(&self) -> bool {
+    pub fn is_own_output(&self) -> bool {
         self.is_own_output
     }
 
     /// Returns the readings a second.
-    pub(crate) fn rate_hz(&self) -> Option<f64> {
+    pub fn rate_hz(&self) -> Option<f64> {
         let passed_s = self.times_s.back()? - self.times_s.front()?;
         (passed_s > 0.0).then(|| (self.times_s.len() - 1) as f64 / passed_s)
     }
 
     /// Returns the latest values as text.
-    pub(crate) fn last(&self) -> String {
+    pub fn last(&self) -> String {
         let values = self.values.iter().map(|seen| value_text(&seen.reading));
         values.collect::<Vec<_>>().join(", ")
     }
 
     /// Returns the source as it is shown.
-    pub(crate) fn report(
+    pub fn report(
         &self,
         source: &Source,
         uses: &[(&'static str, bool)],
@@ -203,7 +203,7 @@ impl HeardSource {
 
 impl SourceReport {
     /// Formats the source in one line.
-    pub(crate) fn line(&self) -> String {
+    pub fn line(&self) -> String {
         let device = self.source.as_deref().unwrap_or(&self.talker);
         let separator = if self.source.is_some() { " " } else { "" };
         let mut name = format!("{} {device}{separator}{}", self.input, self.sentence);

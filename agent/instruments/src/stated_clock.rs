@@ -33,7 +33,7 @@ const MAX_CLOCKS: usize = 1_000;
 
 /// Clocks of the sources.
 #[derive(Debug, Default)]
-pub(crate) struct StatedClocks {
+pub struct StatedClocks {
     /// Moment that monotonic times are counted from.
     start: Option<Instant>,
     clocks: HashMap<Source, StatedClock>,
@@ -43,13 +43,13 @@ pub(crate) struct StatedClocks {
 
 impl StatedClocks {
     /// Records the present time of a server, as it greets.
-    pub(crate) fn note_greeting(&mut self, input: &Arc<str>, stated: Timestamp, heard: Instant) {
+    pub fn note_greeting(&mut self, input: &Arc<str>, stated: Timestamp, heard: Instant) {
         let offset = self.micros(heard) - stated.micros();
         self.greetings.insert(Arc::clone(input), offset);
     }
 
     /// Returns the age of a value on arrival; `None` while that is unknown.
-    pub(crate) fn age(
+    pub fn age(
         &mut self,
         source: &Source,
         stated: Option<Timestamp>,

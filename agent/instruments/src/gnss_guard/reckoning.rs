@@ -17,15 +17,15 @@ const FIX_ERROR_NM: f64 = 0.2;
 
 /// Place by dead reckoning.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ReckonedPlace {
-    pub(crate) position: Position,
+pub struct ReckonedPlace {
+    pub position: Position,
     /// Greatest distance of the ship from it, nautical miles.
-    pub(crate) radius_nm: f64,
+    pub radius_nm: f64,
 }
 
 impl ReckonedPlace {
     /// Returns a position as a place without error.
-    pub(crate) fn exactly(position: Position) -> ReckonedPlace {
+    pub fn exactly(position: Position) -> ReckonedPlace {
         ReckonedPlace {
             position,
             radius_nm: 0.0,
@@ -182,7 +182,7 @@ impl Run {
 }
 
 /// Returns the position some miles north and east of another. Nothing lies beyond a pole.
-pub(crate) fn offset(from: Position, north_nm: f64, east_nm: f64) -> Position {
+pub fn offset(from: Position, north_nm: f64, east_nm: f64) -> Position {
     let lat_deg = (from.lat_deg() + north_nm / NM_A_DEGREE).clamp(-90.0, 90.0);
     let middle_deg = f64::midpoint(from.lat_deg(), lat_deg);
     let cos = middle_deg.to_radians().cos().max(0.01);

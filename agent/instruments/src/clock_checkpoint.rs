@@ -18,16 +18,16 @@ const YEAR_S: f64 = 366.0 * DAY_S;
 
 /// Both clocks at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ClockCheckpoint {
+pub struct ClockCheckpoint {
     /// GNSS time.
-    pub(crate) ship: Timestamp,
+    pub ship: Timestamp,
     /// Computer's time.
-    pub(crate) computer: Timestamp,
+    pub computer: Timestamp,
 }
 
 impl ClockCheckpoint {
     /// Returns the approximate true time if a first stamp cannot be right.
-    pub(crate) fn contradict(self, stamp: Timestamp, computer: Timestamp) -> Option<Timestamp> {
+    pub fn contradict(self, stamp: Timestamp, computer: Timestamp) -> Option<Timestamp> {
         if computer.seconds_since(self.ship) < -AGREEMENT_S {
             let later_s = stamp.seconds_since(self.ship);
             let is_possible = (-DAY_S..=YEAR_S).contains(&later_s);

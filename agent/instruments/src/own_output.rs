@@ -16,7 +16,7 @@ use tokio::time::Instant;
 
 /// Talker of the agent's own sentences by default. Sources without a configured talker never match
 /// its headings.
-pub(crate) const AGENT_TALKER: [u8; 2] = *b"II";
+pub const AGENT_TALKER: [u8; 2] = *b"II";
 
 /// Time after which a heading comes back no more: the compass has fallen silent by then.
 const ECHO_TIME: Duration = Duration::from_secs(2);
@@ -33,10 +33,10 @@ const MAX_SOURCES: usize = 1_000;
 
 /// Raw heading with deviation and variation, as HDG has them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SentHeading {
-    pub(crate) raw: CompassHeading,
-    pub(crate) deviation: Deviation,
-    pub(crate) variation: Variation,
+pub struct SentHeading {
+    pub raw: CompassHeading,
+    pub deviation: Deviation,
+    pub variation: Variation,
 }
 
 impl SentHeading {
@@ -50,13 +50,13 @@ impl SentHeading {
 
 /// Headings that the agent sends, by what their receivers know them by.
 #[derive(Debug)]
-pub(crate) struct OwnHeadings {
+pub struct OwnHeadings {
     /// Talker and sentence.
-    pub(crate) sentences: Vec<([u8; 2], [u8; 3])>,
+    pub sentences: Vec<([u8; 2], [u8; 3])>,
     /// Devices on NMEA 2000 that the agent itself is.
-    pub(crate) devices: Vec<OwnDevice>,
+    pub devices: Vec<OwnDevice>,
     /// Signal K: `$source`.
-    pub(crate) labels: Vec<String>,
+    pub labels: Vec<String>,
 }
 
 impl Default for OwnHeadings {
@@ -94,7 +94,7 @@ fn is_own(device: &OwnDevice, source: &Source) -> bool {
 
 /// Headings that the agent has sent, and the sources that repeat them.
 #[derive(Debug)]
-pub(crate) struct OwnOutput {
+pub struct OwnOutput {
     own: OwnHeadings,
     sent: VecDeque<(Instant, SentHeading)>,
     repeats: HashMap<Source, Repeats>,
@@ -109,7 +109,7 @@ struct Repeats {
 
 impl OwnOutput {
     /// Creates the memory of an output.
-    pub(crate) fn new(own: OwnHeadings) -> OwnOutput {
+    pub fn new(own: OwnHeadings) -> OwnOutput {
         OwnOutput {
             own,
             sent: VecDeque::new(),
@@ -118,7 +118,7 @@ impl OwnOutput {
     }
 
     /// Records a heading as it is sent.
-    pub(crate) fn note_sent(&mut self, heading: SentHeading, now: Instant) {
+    pub fn note_sent(&mut self, heading: SentHeading, now: Instant) {
         if self.sent.len() >= MAX_SENT {
             self.sent.pop_front();
         }
@@ -126,7 +126,7 @@ impl OwnOutput {
     }
 
     /// Returns whether an observation is the agent's own output.
-    pub(crate) fn is_echo(&mut self, seen: &Observation, now: Instant) -> bool {
+    pub fn is_echo(&mut self, seen: &Observation, now: Instant) -> bool {
         if self.own.names(&seen.source) {
             return true;
         }
@@ -146,7 +146,7 @@ impl OwnOutput {
     }
 
     /// Returns the sources that repeat the output.
-    pub(crate) fn repeaters(&self) -> impl Iterator<Item = &Source> {
+    pub fn repeaters(&self) -> impl Iterator<Item = &Source> {
         self.repeats
             .iter()
             .filter(|(_, repeats)| repeats.changes >= CHANGES)

@@ -1,6 +1,6 @@
 //! `[silence]`: age up to which readings serve, for sampling and for steering.
 
-use super::limits::PositiveSeconds;
+use super::seconds::PositiveSeconds;
 use serde::Deserialize;
 use std::time::Duration;
 
@@ -10,33 +10,33 @@ const STEERING_INTERVALS: f64 = 3.0;
 /// Age up to which readings serve.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct SilenceConfig {
+pub struct SilenceConfig {
     /// Sampling: seconds of GNSS time after which the next source is used.
-    pub(crate) stale_s: PositiveSeconds,
+    pub stale_s: PositiveSeconds,
     /// Steering: seconds after the compass's last reading, or three of its own intervals.
-    pub(crate) steering_s: PositiveSeconds,
+    pub steering_s: PositiveSeconds,
     /// Other times of single roles.
-    pub(crate) compass: SteeringRoleSilence,
-    pub(crate) gyro: RoleSilence,
-    pub(crate) satellite: RoleSilence,
-    pub(crate) position: SteeringRoleSilence,
-    pub(crate) rate_of_turn: RoleSilence,
-    pub(crate) log: RoleSilence,
-    pub(crate) roll: RoleSilence,
-    pub(crate) temperature: RoleSilence,
+    pub compass: SteeringRoleSilence,
+    pub gyro: RoleSilence,
+    pub satellite: RoleSilence,
+    pub position: SteeringRoleSilence,
+    pub rate_of_turn: RoleSilence,
+    pub log: RoleSilence,
+    pub roll: RoleSilence,
+    pub temperature: RoleSilence,
 }
 
 /// Times of a role that is only sampled.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct RoleSilence {
+pub struct RoleSilence {
     stale_s: Option<PositiveSeconds>,
 }
 
 /// Times of a role that is steered by, too.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct SteeringRoleSilence {
+pub struct SteeringRoleSilence {
     stale_s: Option<PositiveSeconds>,
     steering_s: Option<PositiveSeconds>,
 }
@@ -60,14 +60,14 @@ impl Default for SilenceConfig {
 
 impl SilenceConfig {
     /// Returns the seconds for which a reading of a sampled role serves.
-    pub(crate) fn stale_s(&self, role: RoleSilence) -> f64 {
+    pub fn stale_s(&self, role: RoleSilence) -> f64 {
         role.stale_s.unwrap_or(self.stale_s).0
     }
 
     /// Returns the age up to which the compass is steered by, given its own interval.
     ///
     /// A `stale_s` below two seconds has always ended the output, too.
-    pub(crate) fn compass_steering(&self, interval: Duration) -> Duration {
+    pub fn compass_steering(&self, interval: Duration) -> Duration {
         let shortest = match self.compass.steering_s {
             Some(steering_s) => steering_s.0,
             None => self.steering_s.0.min(self.stale_s(self.compass.sampling())),
@@ -78,7 +78,7 @@ impl SilenceConfig {
 
     /// Returns the age of the last fix up to which a heading is corrected by dead reckoning from
     /// it. Without one the error of the reckoned place decides.
-    pub(crate) fn position_steering(&self) -> Option<Duration> {
+    pub fn position_steering(&self) -> Option<Duration> {
         let seconds = self.position.steering_s.map(|steering_s| steering_s.0);
         seconds.map(Duration::from_secs_f64)
     }
@@ -86,7 +86,7 @@ impl SilenceConfig {
 
 impl SteeringRoleSilence {
     /// Returns the times for sampling.
-    pub(crate) fn sampling(self) -> RoleSilence {
+    pub fn sampling(self) -> RoleSilence {
         RoleSilence {
             stale_s: self.stale_s,
         }

@@ -18,7 +18,7 @@
 mod receiver;
 mod reckoning;
 
-pub(crate) use reckoning::{ReckonedPlace, offset};
+pub use reckoning::{ReckonedPlace, offset};
 
 use super::roles::{GnssSource, Instrument, ReferenceHeading, Refusal, Signal};
 use binnacle_compass::angle::TrueHeading;
@@ -40,16 +40,16 @@ const MAX_RECEIVERS: usize = 16;
 
 /// Interference with the receivers, as it goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Interference {
+pub struct Interference {
     /// Ship's time when it began.
-    pub(crate) since: Option<Timestamp>,
+    pub since: Option<Timestamp>,
     /// Last place that was trusted.
-    pub(crate) place: Position,
+    pub place: Position,
 }
 
 /// State of the guard.
 #[derive(Debug)]
-pub(crate) struct GnssGuard {
+pub struct GnssGuard {
     /// Silence after which the next receiver is used, seconds.
     stale_s: f64,
     clock: GuardClock,
@@ -101,7 +101,7 @@ impl GuardClock {
 
 impl GnssGuard {
     /// Creates a guard that has heard nothing; `stale_s` is the silence limit of the position.
-    pub(crate) fn new(stale_s: f64) -> GnssGuard {
+    pub fn new(stale_s: f64) -> GnssGuard {
         GnssGuard {
             stale_s,
             clock: GuardClock::default(),
@@ -116,7 +116,7 @@ impl GnssGuard {
     }
 
     /// Advances to a moment by the ship's time and the computer's.
-    pub(crate) fn advance(&mut self, ship: Option<Timestamp>, now: Instant) {
+    pub fn advance(&mut self, ship: Option<Timestamp>, now: Instant) {
         let passed_s = self.clock.advance(ship, now);
         if passed_s <= 0.0 {
             return;
@@ -128,7 +128,7 @@ impl GnssGuard {
     }
 
     /// Applies a signal, of a receiver if one gave it. Returns those to use in its place.
-    pub(crate) fn apply(
+    pub fn apply(
         &mut self,
         signal: Signal,
         receiver: Option<GnssSource<'_>>,
@@ -155,7 +155,7 @@ impl GnssGuard {
     }
 
     /// Records the corrected heading, which serves where there is no gyro.
-    pub(crate) fn note_corrected(&mut self, heading: Option<TrueHeading>) {
+    pub fn note_corrected(&mut self, heading: Option<TrueHeading>) {
         let at_s = self.clock.seconds;
         self.corrected = heading.map(|heading| Dated {
             value: heading.degrees(),
@@ -164,17 +164,17 @@ impl GnssGuard {
     }
 
     /// Returns the interference, if there is any.
-    pub(crate) fn interference(&self) -> Option<Interference> {
+    pub fn interference(&self) -> Option<Interference> {
         self.interference
     }
 
     /// Returns the ship's place now.
-    pub(crate) fn place(&self) -> Option<ReckonedPlace> {
+    pub fn place(&self) -> Option<ReckonedPlace> {
         self.ship().map(Reckoning::place)
     }
 
     /// Describes the receivers that are not trusted while another one is used.
-    pub(crate) fn problems(&self) -> impl Iterator<Item = String> {
+    pub fn problems(&self) -> impl Iterator<Item = String> {
         let used = self.used().map(|used| &self.receivers[used].source);
         let refused = self
             .receivers

@@ -45,7 +45,7 @@ const YEAR_S: f64 = 366.0 * 86_400.0;
 
 /// Effect of a time stamp on the clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Step {
+pub enum Step {
     /// No effect.
     Held,
     /// Time advanced.
@@ -56,7 +56,7 @@ pub(crate) enum Step {
 
 /// One clock from ranked sources of time.
 #[derive(Debug)]
-pub(crate) struct GnssClock {
+pub struct GnssClock {
     now: Option<Timestamp>,
     candidate: Option<Timestamp>,
     stale_s: f64,
@@ -112,7 +112,7 @@ struct UnconfirmedJump {
 
 impl GnssClock {
     /// Creates a clock that has not been set, with sources of rank 0 to `ranks - 1`.
-    pub(crate) fn new(ranks: usize, stale_s: f64) -> GnssClock {
+    pub fn new(ranks: usize, stale_s: f64) -> GnssClock {
         GnssClock {
             now: None,
             candidate: None,
@@ -128,19 +128,19 @@ impl GnssClock {
     }
 
     /// Returns GNSS time, once it is known.
-    pub(crate) fn now(&self) -> Option<Timestamp> {
+    pub fn now(&self) -> Option<Timestamp> {
         self.now
     }
 
     /// Returns GNSS time as it runs on while a jump is uncertain: by the seconds that the receiver
     /// has counted since.
-    pub(crate) fn running(&self) -> Option<Timestamp> {
+    pub fn running(&self) -> Option<Timestamp> {
         let lasted_s = self.unconfirmed.map_or(0.0, |jump| jump.lasted_s);
         self.now.map(|now| now.plus_seconds(lasted_s))
     }
 
     /// Sets the computer's time as the reference for jumps.
-    pub(crate) fn set_reference(&mut self, time: Timestamp, now: Instant) {
+    pub fn set_reference(&mut self, time: Timestamp, now: Instant) {
         self.reference = Some(ReferenceClock {
             time,
             set_at: now,
@@ -150,31 +150,31 @@ impl GnssClock {
     }
 
     /// Sets the checkpoint that the first stamp is checked against.
-    pub(crate) fn restore_checkpoint(&mut self, checkpoint: ClockCheckpoint) {
+    pub fn restore_checkpoint(&mut self, checkpoint: ClockCheckpoint) {
         self.checkpoint = Some(checkpoint);
     }
 
     /// Returns whether its time is uncertain.
-    pub(crate) fn is_uncertain(&self) -> bool {
+    pub fn is_uncertain(&self) -> bool {
         self.unconfirmed.is_some()
     }
 
     /// Corrects the reference by the server's time, which the computer may not know.
-    pub(crate) fn correct_reference(&mut self, time: Timestamp, now: Instant) {
+    pub fn correct_reference(&mut self, time: Timestamp, now: Instant) {
         if let Some(reference) = &mut self.reference {
             (reference.time, reference.set_at) = (time, now);
         }
     }
 
     /// Sets the receive time of the stamps that follow.
-    pub(crate) fn set_receive_time(&mut self, heard_at: Instant) {
+    pub fn set_receive_time(&mut self, heard_at: Instant) {
         if let Some(reference) = &mut self.reference {
             reference.heard_at = heard_at;
         }
     }
 
     /// Describes the fault of the receiver's time.
-    pub(crate) fn problem(&self) -> Option<String> {
+    pub fn problem(&self) -> Option<String> {
         if let Some(unconfirmed) = self.unconfirmed {
             let offset = if unconfirmed.jump_s.abs() < MAX_STEP_S {
                 format!("{:+.0} s", unconfirmed.jump_s)
@@ -200,7 +200,7 @@ impl GnssClock {
     }
 
     /// Applies a time stamp from the source of a rank, 0 being the best.
-    pub(crate) fn observe(&mut self, rank: usize, stamp: Timestamp) -> Step {
+    pub fn observe(&mut self, rank: usize, stamp: Timestamp) -> Step {
         if !PLAUSIBLE_MICROS.contains(&stamp.micros()) || rank >= self.waiting.len() {
             return Step::Held;
         }

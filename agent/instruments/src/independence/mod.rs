@@ -21,7 +21,7 @@ const VARIATION_S: f64 = 60.0;
 
 /// Test of both references.
 #[derive(Debug, Default)]
-pub(crate) struct Independence {
+pub struct Independence {
     time: Option<Timestamp>,
     position: Option<Position>,
     variation: Option<(Timestamp, Variation)>,
@@ -53,7 +53,7 @@ enum Verdict {
 
 impl Independence {
     /// Applies a signal. Returns the refusal of a reference that must not be used.
-    pub(crate) fn observe(&mut self, signal: Signal) -> Option<Signal> {
+    pub fn observe(&mut self, signal: Signal) -> Option<Signal> {
         match signal {
             Signal::Time(now) => {
                 self.time = Some(now);
@@ -75,7 +75,7 @@ impl Independence {
     }
 
     /// Describes the references that must not be used.
-    pub(crate) fn problems(&self) -> impl Iterator<Item = String> {
+    pub fn problems(&self) -> impl Iterator<Item = String> {
         [("gyro", &self.gyro), ("satellite", &self.satellite)]
             .into_iter()
             .filter_map(|(role, reference)| match reference.verdict {

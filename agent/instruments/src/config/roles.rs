@@ -8,62 +8,62 @@ use toml::Spanned;
 /// Ranked sources for each instrument.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct RolesConfig {
+pub struct RolesConfig {
     /// Magnetic compass, raw.
     #[serde(deserialize_with = "compass_sources")]
-    pub(crate) compass: Vec<SourceConfig>,
+    pub compass: Vec<SourceConfig>,
     /// Gyro compass.
     #[serde(deserialize_with = "true_heading_sources")]
-    pub(crate) gyro: Vec<SourceConfig>,
+    pub gyro: Vec<SourceConfig>,
     /// Satellite compass.
     #[serde(deserialize_with = "true_heading_sources")]
-    pub(crate) satellite: Vec<SourceConfig>,
+    pub satellite: Vec<SourceConfig>,
     /// Position, speed and GNSS time.
     #[serde(deserialize_with = "position_sources")]
-    pub(crate) position: Vec<SourceConfig>,
+    pub position: Vec<SourceConfig>,
     /// Rate of turn.
     #[serde(deserialize_with = "rate_of_turn_sources")]
-    pub(crate) rate_of_turn: Vec<SourceConfig>,
+    pub rate_of_turn: Vec<SourceConfig>,
     /// Log: speed through the water.
     #[serde(deserialize_with = "log_sources")]
-    pub(crate) log: Vec<SourceConfig>,
+    pub log: Vec<SourceConfig>,
     /// Roll.
     #[serde(deserialize_with = "roll_sources")]
-    pub(crate) roll: Vec<SourceConfig>,
+    pub roll: Vec<SourceConfig>,
     /// Temperature of the air.
     #[serde(deserialize_with = "temperature_sources")]
-    pub(crate) temperature: Vec<SourceConfig>,
+    pub temperature: Vec<SourceConfig>,
 }
 
 /// One source; an omitted key matches anything.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct SourceConfig {
+pub struct SourceConfig {
     /// Name of the input.
-    pub(crate) input: Option<Spanned<String>>,
+    pub input: Option<Spanned<String>>,
     /// Talker, two letters.
     #[serde(default, deserialize_with = "two_letters")]
-    pub(crate) talker: Option<[u8; 2]>,
+    pub talker: Option<[u8; 2]>,
     /// Sentence, three letters.
     #[serde(default, deserialize_with = "three_letters")]
-    pub(crate) sentence: Option<[u8; 3]>,
+    pub sentence: Option<[u8; 3]>,
     /// Signal K: `$source` of the value.
     #[serde(default, deserialize_with = "some_text")]
-    pub(crate) source: Option<String>,
+    pub source: Option<String>,
     /// System function, `s:` of the TAG block.
     #[serde(default, deserialize_with = "some_text")]
-    pub(crate) sfi: Option<String>,
+    pub sfi: Option<String>,
     /// Address that datagrams come from.
-    pub(crate) sender: Option<IpAddr>,
+    pub sender: Option<IpAddr>,
     /// Address on NMEA 2000.
     #[serde(default, deserialize_with = "n2k_address")]
-    pub(crate) n2k_address: Option<Address>,
+    pub n2k_address: Option<Address>,
     /// NAME on NMEA 2000.
     #[serde(default, deserialize_with = "n2k_name")]
-    pub(crate) n2k_name: Option<Name>,
+    pub n2k_name: Option<Name>,
     /// HDM only: the heading has had no deviation applied.
     #[serde(default)]
-    pub(crate) raw: bool,
+    pub raw: bool,
 }
 
 impl SourceConfig {
@@ -83,7 +83,7 @@ impl SourceConfig {
 
     /// Returns the name of the source, which is the same on every start: what the configuration
     /// asks for.
-    pub(crate) fn name(&self) -> String {
+    pub fn name(&self) -> String {
         let input = self.input.as_ref().map(|input| input.get_ref().clone());
         let letters = |letters: &[u8]| String::from_utf8_lossy(letters).into_owned();
         let talker = self.talker.map(|talker| letters(&talker));
@@ -103,7 +103,7 @@ impl SourceConfig {
     }
 
     /// Returns whether the talker matches.
-    pub(crate) fn matches_talker(&self, talker: [u8; 2]) -> bool {
+    pub fn matches_talker(&self, talker: [u8; 2]) -> bool {
         self.talker.is_none_or(|wanted| wanted == talker)
     }
 }
@@ -132,7 +132,7 @@ impl RolesConfig {
     }
 
     /// Returns the roles without input names, for recordings.
-    pub(crate) fn without_input_names(&self) -> RolesConfig {
+    pub fn without_input_names(&self) -> RolesConfig {
         let mut roles = self.clone();
         for sources in [
             &mut roles.compass,
@@ -167,7 +167,7 @@ impl RolesConfig {
     /// Returns the conventional talkers of each role. `SK` is Signal K, whose HDG is
     /// `navigation.headingCompass`: the raw reading. `N2` is NMEA 2000, where true headings are
     /// satellite compasses' as a rule.
-    pub(crate) fn usual() -> RolesConfig {
+    pub fn usual() -> RolesConfig {
         let source = SourceConfig::usual;
         let of_any = |sentence| source(None, sentence);
         let of = |talkers: &[&[u8; 2]], sentence| {

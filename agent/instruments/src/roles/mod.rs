@@ -21,7 +21,7 @@ const MAX_REFUSED: usize = 16;
 
 /// Signal of an instrument, whichever source it came from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Signal {
+pub enum Signal {
     /// Time advanced.
     Time(Timestamp),
     /// Time jumped.
@@ -58,7 +58,7 @@ pub(crate) enum Signal {
 
 /// Instrument that gives a heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Instrument {
+pub enum Instrument {
     Compass,
     Gyro,
     Satellite,
@@ -66,7 +66,7 @@ pub(crate) enum Instrument {
 
 /// Reason why a heading must not be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Refusal {
+pub enum Refusal {
     /// It is made of the compass.
     NotIndependent,
     /// It is not yet shown to be another instrument's than the compass.
@@ -79,22 +79,22 @@ pub(crate) enum Refusal {
 
 /// Heading of a reference, and the source that gave it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ReferenceHeading {
-    pub(crate) heading: TrueHeading,
-    pub(crate) source: SourceId,
+pub struct ReferenceHeading {
+    pub heading: TrueHeading,
+    pub source: SourceId,
 }
 
 /// Receiver that a signal comes from.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct GnssSource<'a> {
-    pub(crate) source: &'a Source,
+pub struct GnssSource<'a> {
+    pub source: &'a Source,
     /// Selection of the position that it matches, 0 being the best.
-    pub(crate) rank: usize,
+    pub rank: usize,
 }
 
 /// The vessel's instruments and its clock.
 #[derive(Debug)]
-pub(crate) struct Roles {
+pub struct Roles {
     compass: Role,
     gyro: Role,
     satellite: Role,
@@ -110,7 +110,7 @@ pub(crate) struct Roles {
 
 impl Roles {
     /// Creates the configured roles.
-    pub(crate) fn new(config: &RolesConfig, silence: &SilenceConfig) -> Roles {
+    pub fn new(config: &RolesConfig, silence: &SilenceConfig) -> Roles {
         let position_s = silence.stale_s(silence.position.sampling());
         let compass_s = silence.stale_s(silence.compass.sampling());
         let sampled = |role| silence.stale_s(role);
@@ -138,39 +138,39 @@ impl Roles {
     }
 
     /// Adds headings that the agent sends, which no source without a talker matches.
-    pub(crate) fn add_own_headings(&mut self, headings: &[([u8; 2], [u8; 3])]) {
+    pub fn add_own_headings(&mut self, headings: &[([u8; 2], [u8; 3])]) {
         for role in [&mut self.compass, &mut self.gyro, &mut self.satellite] {
             role.add_own_headings(headings);
         }
     }
 
     /// Returns GNSS time, once it is known.
-    pub(crate) fn now(&self) -> Option<Timestamp> {
+    pub fn now(&self) -> Option<Timestamp> {
         self.clock.now()
     }
 
     /// Returns GNSS time as it runs on while it is uncertain.
-    pub(crate) fn running_time(&self) -> Option<Timestamp> {
+    pub fn running_time(&self) -> Option<Timestamp> {
         self.clock.running()
     }
 
     /// Returns GNSS time unless it is uncertain.
-    pub(crate) fn reliable_time(&self) -> Option<Timestamp> {
+    pub fn reliable_time(&self) -> Option<Timestamp> {
         self.clock.now().filter(|_| !self.clock.is_uncertain())
     }
 
     /// Returns the clock, to set its references.
-    pub(crate) fn clock(&mut self) -> &mut GnssClock {
+    pub fn clock(&mut self) -> &mut GnssClock {
         &mut self.clock
     }
 
     /// Describes the fault of the receiver's time.
-    pub(crate) fn clock_problem(&self) -> Option<String> {
+    pub fn clock_problem(&self) -> Option<String> {
         self.clock.problem()
     }
 
     /// Describes sources that must not be used as they are configured.
-    pub(crate) fn problems(&self, now: Instant, heard_within: Duration) -> Vec<String> {
+    pub fn problems(&self, now: Instant, heard_within: Duration) -> Vec<String> {
         let moment = self.moment(now, Duration::ZERO);
         let mixed = self.roles().flat_map(|role| role.problems(moment));
         let recent = self
@@ -184,7 +184,7 @@ impl Roles {
     }
 
     /// Returns the roles that a source matches, and whether it serves in each.
-    pub(crate) fn uses(&self, seen: &Observation) -> Vec<(&'static str, bool)> {
+    pub fn uses(&self, seen: &Observation) -> Vec<(&'static str, bool)> {
         self.roles()
             .filter(|role| role.rank(seen).is_some())
             .map(|role| (role.name(), role.has_served(&seen.source)))
@@ -214,14 +214,14 @@ impl Roles {
     }
 
     /// Applies the time that a recording gives a line: used when no receiver gives any.
-    pub(crate) fn observe_recorded_time(&mut self, stamp: Timestamp) -> Option<Signal> {
+    pub fn observe_recorded_time(&mut self, stamp: Timestamp) -> Option<Signal> {
         self.set_clock(self.position.source_count(), stamp)
     }
 
     /// Returns the signals of an observation of some age on arrival: none when its source has no
     /// role, or when a better source is alive. Every receiver gives its positions: which of them is
     /// used depends on whether it is trusted.
-    pub(crate) fn observe(
+    pub fn observe(
         &mut self,
         seen: &Observation,
         measured: Instant,
@@ -334,7 +334,7 @@ impl Roles {
     }
 
     /// Returns the receiver of an observation, where the position may come from it.
-    pub(crate) fn receiver<'a>(&self, seen: &'a Observation) -> Option<GnssSource<'a>> {
+    pub fn receiver<'a>(&self, seen: &'a Observation) -> Option<GnssSource<'a>> {
         let source = &seen.source;
         let rank = match seen.reading {
             Reading::Fix { .. } => self.position.rank(seen),
@@ -345,7 +345,7 @@ impl Roles {
     }
 
     /// Records that the position of a source was used.
-    pub(crate) fn note_position_used(&mut self, source: &Source) {
+    pub fn note_position_used(&mut self, source: &Source) {
         self.position.note_served(source);
     }
 

@@ -11,7 +11,7 @@ const INTERVALS: usize = 7;
 
 /// A reading and the time at which it was measured, by the computer's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Latest<T> {
+pub struct Latest<T> {
     value: T,
     measured: Instant,
 }
@@ -21,7 +21,7 @@ impl<T: Copy> Latest<T> {
     ///
     /// GNSS time does not serve here: it stands still when the receiver fails, and a heading must
     /// not look alive because of it.
-    pub(crate) fn within(this: Option<Latest<T>>, age: Duration, now: Instant) -> Option<T> {
+    pub fn within(this: Option<Latest<T>>, age: Duration, now: Instant) -> Option<T> {
         let latest = this?;
         (now.saturating_duration_since(latest.measured) <= age).then_some(latest.value)
     }
@@ -29,22 +29,22 @@ impl<T: Copy> Latest<T> {
 
 /// Latest readings of the instruments.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Readings {
-    pub(crate) compass: Option<Latest<CompassHeading>>,
+pub struct Readings {
+    pub compass: Option<Latest<CompassHeading>>,
     /// Set while two sensors that read differently send as the compass.
-    pub(crate) compass_is_mixed: bool,
-    pub(crate) gyro: Option<Latest<TrueHeading>>,
-    pub(crate) satellite: Option<Latest<TrueHeading>>,
-    pub(crate) position: Option<Latest<Position>>,
-    pub(crate) sog_kn: Option<Latest<f64>>,
-    pub(crate) rate_of_turn_deg_min: Option<Latest<f64>>,
-    pub(crate) roll_deg: Option<Latest<f64>>,
+    pub compass_is_mixed: bool,
+    pub gyro: Option<Latest<TrueHeading>>,
+    pub satellite: Option<Latest<TrueHeading>>,
+    pub position: Option<Latest<Position>>,
+    pub sog_kn: Option<Latest<f64>>,
+    pub rate_of_turn_deg_min: Option<Latest<f64>>,
+    pub roll_deg: Option<Latest<f64>>,
     compass_intervals: Intervals,
 }
 
 impl Readings {
     /// Applies the signal of an instrument, measured at `measured`.
-    pub(crate) fn apply(&mut self, signal: Signal, measured: Instant) {
+    pub fn apply(&mut self, signal: Signal, measured: Instant) {
         match signal {
             Signal::Compass(value) => {
                 self.compass_intervals.note(self.compass, measured);
@@ -82,7 +82,7 @@ impl Readings {
     }
 
     /// Returns the compass's own interval; zero before it is known.
-    pub(crate) fn compass_interval(&self) -> Duration {
+    pub fn compass_interval(&self) -> Duration {
         self.compass_intervals.middle()
     }
 }
