@@ -1,10 +1,10 @@
 //! Data acquisition: from observations through roles and sampler to samples, with the latest
 //! readings.
 
-use crate::config::{RolesConfig, SilenceConfig};
 use crate::sampler::{Exclusion, Sampler};
 use binnacle_compass::angle::TrueHeading;
 use binnacle_compass::time::Timestamp;
+use binnacle_instruments::config::{RolesConfig, SilenceConfig};
 use binnacle_instruments::{
     ClockCheckpoint, GnssGuard, HeardSources, Independence, Interference, OwnHeadings, OwnOutput,
     Readings, ReckonedPlace, Roles, SentHeading, Signal, SourceReport, StatedClocks,

@@ -38,8 +38,11 @@ pub struct HeardSource {
 /// Source as the page, `status` and `discover` show it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SourceReport {
+    /// Name of the input.
     pub input: String,
+    /// Talker of the sentence, or empty.
     pub talker: String,
+    /// Sentence, or the kind of message.
     pub sentence: String,
     /// Signal K: `$source`.
     #[serde(default, skip_serializing_if = "Option::is_none")]

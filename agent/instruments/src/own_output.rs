@@ -34,8 +34,11 @@ const MAX_SOURCES: usize = 1_000;
 /// Raw heading with deviation and variation, as HDG has them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SentHeading {
+    /// Compass heading.
     pub raw: CompassHeading,
+    /// Its deviation.
     pub deviation: Deviation,
+    /// Variation there.
     pub variation: Variation,
 }
 

@@ -30,14 +30,21 @@ impl<T: Copy> Latest<T> {
 /// Latest readings of the instruments.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Readings {
+    /// Magnetic compass, raw.
     pub compass: Option<Latest<CompassHeading>>,
     /// Set while two sensors that read differently send as the compass.
     pub compass_is_mixed: bool,
+    /// Gyro compass.
     pub gyro: Option<Latest<TrueHeading>>,
+    /// Satellite compass.
     pub satellite: Option<Latest<TrueHeading>>,
+    /// Position.
     pub position: Option<Latest<Position>>,
+    /// Speed over ground, knots.
     pub sog_kn: Option<Latest<f64>>,
+    /// Rate of turn, degrees a minute, starboard positive.
     pub rate_of_turn_deg_min: Option<Latest<f64>>,
+    /// Roll, degrees, starboard side down positive.
     pub roll_deg: Option<Latest<f64>>,
     compass_intervals: Intervals,
 }

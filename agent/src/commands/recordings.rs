@@ -4,10 +4,11 @@ use super::bad_input::BadInput;
 use super::configuration::load;
 use crate::atomic_file::write_atomically;
 use crate::clock;
-use crate::config::{Config, RolesConfig, SilenceConfig};
+use crate::config::Config;
 use crate::raw_log::{self, Span};
 use crate::replay::{self, Recordings};
 use binnacle_compass::time::Timestamp;
+use binnacle_instruments::config::{RolesConfig, SilenceConfig};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 

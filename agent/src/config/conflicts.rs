@@ -2,10 +2,10 @@
 //! and keys of a source that its input never names.
 
 use super::error::Problem;
-use super::roles::SourceConfig;
 use super::{Config, RolesConfig};
 use binnacle_input::InputConfig;
 use binnacle_input::config::{ActisenseConfig, YdwgConfig};
+use binnacle_instruments::config::SourceConfig;
 use binnacle_output::config::OutputConfig;
 use std::collections::BTreeSet;
 use std::fmt;

@@ -1,7 +1,6 @@
 //! Checked numbers of the configuration.
 
 use serde::Deserialize;
-use std::time::Duration;
 
 /// Megabytes (of a million bytes), from 4 to 100 000.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

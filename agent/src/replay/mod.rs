@@ -15,10 +15,10 @@ mod table;
 mod tests;
 
 use crate::acquisition::Acquisition;
-use crate::config::{RolesConfig, SilenceConfig};
 use crate::sampler::Tally;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
+use binnacle_instruments::config::{RolesConfig, SilenceConfig};
 use binnacle_observation::recording::NotUnderstood;
 use binnacle_observation::signalk::DeltaCounts;
 use binnacle_wire::messages::Settings;

@@ -17,7 +17,7 @@ use crate::acquisition::Acquisition;
 use crate::alert::{
     AlarmSentence, AlertMonitor, AlertRecord, DifferenceMonitor, HeadingDifference,
 };
-use crate::config::{Config, SilenceConfig, UploadPlan};
+use crate::config::{Config, UploadPlan};
 use crate::raw_log::{RawLog, Second};
 use crate::sampler::{Exclusion, Tally};
 use crate::spool::{Pending, Seal, Spool, StoredReport};
@@ -28,6 +28,7 @@ use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
 use binnacle_input::InputStats;
 use binnacle_instruments::Latest;
+use binnacle_instruments::config::SilenceConfig;
 use binnacle_nmea::sentence::Acn;
 use binnacle_observation::Observation;
 use binnacle_output::{AlertSentences, HeadingSentences, Outputs, SharedOutputs};

@@ -13,6 +13,7 @@ use crate::spool::Spool;
 use crate::status::{Status, status_socket};
 use crate::uplink;
 use anyhow::Context;
+use binnacle_compass::time::Timestamp;
 use binnacle_input::config::AddressOwner;
 use binnacle_input::{InputConfig, InputStats, SharedEnds};
 use binnacle_instruments::OwnHeadings;
@@ -37,23 +38,15 @@ impl Agent {
         let judged_by = uplink_handle.model.borrow().as_ref().map(|model| model.id);
         let settings = uplink_handle.settings.borrow().clone();
         let last_contact = uplink_handle.link.borrow().last_contact;
+        let (shared_outputs, mut shared_ends) = start_shared_outputs(&config, shutdown);
         let (roles, silence) = (&config.roles, &config.silence);
         let mut acquisition = Acquisition::new(roles, silence, settings, exclusion);
-        let (shared_outputs, mut shared_ends) = start_shared_outputs(&config, shutdown);
         acquisition.set_own_headings(OwnHeadings {
             sentences: config.output.headings(),
             devices: shared_outputs.own_devices(),
             labels: shared_outputs.own_labels(),
         });
-        let is_recorded = |input: &InputConfig| matches!(input, InputConfig::File(_));
-        if !config.inputs.values().any(is_recorded) {
-            // The computer may have lost its time with its power.
-            let known = last_contact.map_or(clock::now(), |contact| contact.max(clock::now()));
-            acquisition.set_reference_time(known, Instant::now());
-            if let Some(before) = spool.clock_checkpoint().await? {
-                acquisition.restore_clock_checkpoint(before);
-            }
-        }
+        set_known_time(&mut acquisition, &config, &spool, last_contact).await?;
         let reports = spool.reports().await?;
         let unstored = Unstored {
             pending: spool.pending().await?,
@@ -151,4 +144,24 @@ fn start_shared_outputs(
         owner.unwrap_or(AddressOwner::Agent)
     };
     SharedOutputs::start(&config.output, owner, &config.data_dir, shutdown)
+}
+
+/// Tells the acquisition what is known of the time, unless a recording is played: the computer may
+/// have lost its own with its power.
+async fn set_known_time(
+    acquisition: &mut Acquisition,
+    config: &Config,
+    spool: &Spool,
+    last_contact: Option<Timestamp>,
+) -> anyhow::Result<()> {
+    let is_recorded = |input: &InputConfig| matches!(input, InputConfig::File(_));
+    if config.inputs.values().any(is_recorded) {
+        return Ok(());
+    }
+    let known = last_contact.map_or(clock::now(), |contact| contact.max(clock::now()));
+    acquisition.set_reference_time(known, Instant::now());
+    if let Some(before) = spool.clock_checkpoint().await? {
+        acquisition.restore_clock_checkpoint(before);
+    }
+    Ok(())
 }

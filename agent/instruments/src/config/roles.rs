@@ -110,10 +110,10 @@ impl SourceConfig {
 
 impl RolesConfig {
     /// Roles of true headings.
-    pub(super) const TRUE_HEADINGS: [&'static str; 2] = ["gyro", "satellite"];
+    pub const TRUE_HEADINGS: [&'static str; 2] = ["gyro", "satellite"];
 
     /// Returns the sources of each role by its name in the file.
-    pub(super) fn by_role(&self) -> [(&'static str, &[SourceConfig]); 8] {
+    pub fn by_role(&self) -> [(&'static str, &[SourceConfig]); 8] {
         [
             ("compass", &self.compass),
             ("gyro", &self.gyro),
@@ -127,7 +127,7 @@ impl RolesConfig {
     }
 
     /// Iterates over the sources of all roles.
-    pub(super) fn sources(&self) -> impl Iterator<Item = &SourceConfig> {
+    pub fn sources(&self) -> impl Iterator<Item = &SourceConfig> {
         self.by_role().into_iter().flat_map(|(_, sources)| sources)
     }
 

@@ -17,12 +17,19 @@ pub struct SilenceConfig {
     pub steering_s: PositiveSeconds,
     /// Other times of single roles.
     pub compass: SteeringRoleSilence,
+    /// Gyro compass.
     pub gyro: RoleSilence,
+    /// Satellite compass.
     pub satellite: RoleSilence,
+    /// Position, speed and GNSS time.
     pub position: SteeringRoleSilence,
+    /// Rate of turn.
     pub rate_of_turn: RoleSilence,
+    /// Log.
     pub log: RoleSilence,
+    /// Roll.
     pub roll: RoleSilence,
+    /// Temperature of the air.
     pub temperature: RoleSilence,
 }
 

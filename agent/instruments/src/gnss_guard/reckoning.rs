@@ -18,6 +18,7 @@ const FIX_ERROR_NM: f64 = 0.2;
 /// Place by dead reckoning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReckonedPlace {
+    /// Position by dead reckoning.
     pub position: Position,
     /// Greatest distance of the ship from it, nautical miles.
     pub radius_nm: f64,

@@ -59,8 +59,11 @@ pub enum Signal {
 /// Instrument that gives a heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instrument {
+    /// Magnetic compass.
     Compass,
+    /// Gyro compass.
     Gyro,
+    /// Satellite compass.
     Satellite,
 }
 
@@ -80,7 +83,9 @@ pub enum Refusal {
 /// Heading of a reference, and the source that gave it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceHeading {
+    /// True heading.
     pub heading: TrueHeading,
+    /// Instrument that gave it.
     pub source: SourceId,
 }
 
