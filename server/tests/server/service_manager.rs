@@ -11,7 +11,7 @@ fn a_service_manager_learns_that_the_server_is_up_and_stops() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("notify");
     let manager = UnixDatagram::bind(&path).unwrap();
-    let patience = Some(Duration::from_secs(60));
+    let patience = Some(Duration::from_mins(1));
     manager.set_read_timeout(patience).unwrap();
     let mut server = serve(folder.path(), &path);
     assert_eq!(next_message(&manager), "READY=1\n");
