@@ -272,7 +272,6 @@ async fn after_hours_of_jamming_the_heading_is_still_within_its_band() {
     let status = at_end(&running, seconds).await;
     // Silence is no interference that the agent could tell from a broken receiver.
     assert_eq!(status["gnss_interference"], Value::Null, "{status}");
-    assert_eq!(status["position"], Value::Null, "{status}");
     assert_heading_within_band(&status, seconds - 1);
     running.kill().await;
 }
