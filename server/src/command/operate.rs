@@ -22,7 +22,7 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::Duration;
 use tokio::net::TcpListener;
-use tokio::signal::unix::{SignalKind, signal};
+use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::task::JoinSet;
 use tracing::{error, info, warn};
 use tracing_subscriber::EnvFilter;
@@ -100,7 +100,9 @@ pub async fn run(app: App, listener: TcpListener, tls: Option<TlsAcceptor>) -> R
             }
         }
     }
-    parts.spawn(stop_on_signal(app.clone()));
+    // Before the server says that it is ready: it may be stopped at once.
+    let terminate = signal(SignalKind::terminate()).context("cannot listen for signals")?;
+    parts.spawn(stop_on_signal(app.clone(), terminate));
     notify_service_manager(NotifyState::Ready);
     let limits = limits_of_connections(&app);
     let (router, stopping) = (routes::router(state), app.stopping.clone());
@@ -144,9 +146,7 @@ fn limits_of_connections(app: &App) -> Limits {
     limits
 }
 
-async fn stop_on_signal(app: App) {
-    let mut terminate =
-        signal(SignalKind::terminate()).expect("the runtime has signals switched on");
+async fn stop_on_signal(app: App, mut terminate: Signal) {
     tokio::select! {
         () = app.stopping.cancelled() => {}
         _ = terminate.recv() => {}
