@@ -9,6 +9,7 @@ corrected heading made of each reading arrives over UDP. Prints percentiles in m
 and the turn that they mean at that rate, as JSON.
 """
 
+import bisect
 import json
 import socket
 import sys
@@ -74,15 +75,16 @@ interval_s = 0.05
             sent.append((reading, time.monotonic()))
             sender.sendto(sentence(f"HCHDG,{reading:.1f},,,,"), bridge)
         time.sleep(1)
+    # Readings repeat after a minute: each is answered by the first arrival after it.
+    by_reading = {}
+    for reading, arrived in arrivals:
+        by_reading.setdefault(reading, []).append(arrived)
     delays, lost = [], 0
-    arrivals = iter(arrivals)
-    reading, arrived = next(arrivals, (None, 0.0))
-    for wanted, at in sent[WARM_UP_S * RATE_HZ:]:
-        # Readings repeat after a minute: each arrival belongs to the last one sent before it.
-        while reading is not None and (arrived < at or reading != wanted) and arrived < at + 1:
-            reading, arrived = next(arrivals, (None, 0.0))
-        if reading == wanted and at <= arrived < at + 1:
-            delays.append(1e3 * (arrived - at))
+    for reading, at in sent[WARM_UP_S * RATE_HZ:]:
+        times = by_reading.get(reading, [])
+        first = bisect.bisect_left(times, at)
+        if first < len(times) and times[first] < at + 1:
+            delays.append(1e3 * (times[first] - at))
         else:
             lost += 1
     if not delays:
