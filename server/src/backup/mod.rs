@@ -104,8 +104,7 @@ pub async fn restore(url: &str, file: &Path) -> Result<()> {
                 place.display()
             );
             let part = Part::create(&place)?;
-            std::fs::copy(file, part.path())
-                .with_context(|| format!("cannot copy {}", file.display()))?;
+            part.fill(file)?;
             sqlite::check(part.path()).await?;
             part.publish()?;
         }
@@ -141,11 +140,19 @@ impl Part {
                 file: file.to_owned(),
             }),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => bail!(
-                "{} exists: another backup is under way, or one was interrupted; then remove it",
+                "{} exists: another backup or restore is under way, or one was interrupted; then remove it",
                 part.display()
             ),
             Err(error) => Err(error).with_context(|| format!("cannot write {}", part.display())),
         }
+    }
+
+    /// Copies a file's content. The copy stays its owner's, whoever may read the file.
+    fn fill(&self, from: &Path) -> Result<()> {
+        let mut into = OpenOptions::new().write(true).open(&self.part)?;
+        let copied = File::open(from).and_then(|mut from| std::io::copy(&mut from, &mut into));
+        copied.with_context(|| format!("cannot copy {}", from.display()))?;
+        Ok(())
     }
 
     fn path(&self) -> &Path {

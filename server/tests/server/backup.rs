@@ -3,7 +3,7 @@
 use binnacle_platform::db::Pools;
 use binnacle_server::backup::{back_up, restore};
 use binnacle_server_testing::{Engine, HOUR_S, TestServer, on_both, passage};
-use std::fs::OpenOptions;
+use std::fs::{OpenOptions, Permissions};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -88,6 +88,25 @@ async fn a_damaged_backup_is_refused_and_leaves_nothing(server: TestServer) {
     let error = format!("{:#}", restore(&url, &file).await.unwrap_err());
     assert!(error.contains("is no backup"), "{error}");
     assert_eq!(count(folder.path()), 1);
+    server.finish().await;
+}
+
+#[tokio::test]
+async fn a_restored_file_is_its_owners_though_all_may_read_the_backup() {
+    let server = TestServer::start(Engine::Sqlite).await;
+    let folder = tempfile::tempdir().unwrap();
+    let (file, place) = (
+        folder.path().join("nightly.backup"),
+        folder.path().join("new.db"),
+    );
+    back_up(server.database_url(), &file).await.unwrap();
+    std::fs::set_permissions(&file, Permissions::from_mode(0o644)).unwrap();
+    let url = format!("sqlite://{}", place.display());
+    restore(&url, &file).await.unwrap();
+    assert_eq!(
+        place.metadata().unwrap().permissions().mode() & 0o777,
+        0o600
+    );
     server.finish().await;
 }
 
