@@ -109,12 +109,14 @@ fn the_agent_counts_what_its_server_s_certificates_cost() {
         for chain in [Chain::EcdsaLeaf, Chain::RsaTwo, Chain::RsaThree] {
             costs.push(cost_of_chain(chain).await?);
         }
+        // How many connections a day needs depends on the machine's load, and so do
+        // packets that are sent again: one connection's bytes do not.
         ensure!(costs.is_sorted(), "{costs:?}");
         Ok(())
     });
 }
 
-/// Returns the cost of a day with a server of this chain, in bytes on the link.
+/// Returns what the agent counts for a connection to a server of this chain, in bytes.
 async fn cost_of_chain(chain: Chain) -> Result<f64> {
     let certify = |folder: &Path, server| chain.make(folder, server);
     let uplink = "profile = \"metered\"";
@@ -122,20 +124,20 @@ async fn cost_of_chain(chain: Chain) -> Result<f64> {
     // The first day brings settings and a first model.
     sail_days(&mut remote, &DAILY, 0, 1).await?;
     let before = remote.satellite.tally().await?;
-    let (counted_before, connection) = counted_bytes(&remote.ship).await?;
+    let (counted_before, _) = counted_bytes(&remote.ship).await?;
     sail_days(&mut remote, &DAILY, 1, 1 + days()).await?;
     let carried = per_day(&before, &remote.satellite.tally().await?);
-    let (counted_after, _) = counted_bytes(&remote.ship).await?;
+    let (counted_after, connection) = counted_bytes(&remote.ship).await?;
     let counted = (counted_after - counted_before) / f64::from(days());
     println!(
         "{chain:?}: {carried:.0} bytes a day, {counted:.0} counted, {connection:.0} a connection"
     );
     remote.check_and_stop().await?;
     ensure!(
-        (counted / carried - 1.0).abs() < 0.1,
+        (counted / carried - 1.0).abs() < 0.2,
         "{counted} of {carried}"
     );
-    Ok(carried)
+    Ok(connection)
 }
 
 /// A link that is up for 20 s every ten minutes, with a round trip of 1.5 s.
