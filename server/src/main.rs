@@ -12,6 +12,7 @@ fn main() -> Result<ExitCode> {
         .map_err(|_| anyhow!("another TLS provider is installed"))?;
     match Cli::parse().command {
         Command::Serve(serve) => command::serve(*serve),
+        Command::Health(arguments) => command::health(&arguments),
         Command::Migrate(database) => command::migrate(&database),
         Command::Backup(arguments) => command::back_up(&arguments),
         Command::Restore(arguments) => command::restore(&arguments),

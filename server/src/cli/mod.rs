@@ -23,6 +23,8 @@ pub struct Cli {
 pub enum Command {
     /// Serve the API and the dashboard, and analyse what arrives
     Serve(Box<Serve>),
+    /// Ask a running server whether it is ready
+    Health(Health),
     /// Bring the database's schema up to date
     Migrate(Database),
     /// Copy the database into a file, while the server goes on
@@ -53,6 +55,14 @@ pub enum Command {
     Plan(Plan),
     /// Plan who adjusts which compass, where and when
     Schedule(Schedule),
+}
+
+/// Arguments of `health`.
+#[derive(Debug, Args)]
+pub struct Health {
+    /// Address of the server
+    #[arg(default_value = "http://127.0.0.1:8080")]
+    pub url: String,
 }
 
 /// Arguments of `backup` and `restore`.

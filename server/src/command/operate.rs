@@ -18,7 +18,7 @@ use binnacle_platform::tls::TlsAcceptor;
 use binnacle_platform::{audit, outbox, webhooks};
 use sd_notify::NotifyState;
 use std::future::Future;
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 use std::time::Duration;
 use tokio::net::TcpListener;
@@ -68,17 +68,17 @@ pub async fn run(app: App, listener: TcpListener, tls: Option<TlsAcceptor>) -> R
     let mut parts = JoinSet::new();
     let events = EventListener::open(&app.db).await?;
     parts.spawn(events.listen(app.clone()));
-    let outdated = analysis_queue::enqueue_outdated(&app.db, app.clock.now().into()).await?;
-    if outdated > 0 {
-        info!(
-            vessels = outdated,
-            "the estimator has changed; analysing again"
-        );
-    }
-    for _ in 0..app.config.analysis_workers {
-        parts.spawn(worker::run(app.clone()));
-    }
-    if app.config.analysis_workers > 0 {
+    if app.config.role.works() && app.config.analysis_workers > 0 {
+        let outdated = analysis_queue::enqueue_outdated(&app.db, app.clock.now().into()).await?;
+        if outdated > 0 {
+            info!(
+                vessels = outdated,
+                "the estimator has changed; analysing again"
+            );
+        }
+        for _ in 0..app.config.analysis_workers {
+            parts.spawn(worker::run(app.clone()));
+        }
         parts.spawn(alerts::watch(app.clone()));
         parts.spawn(audit::watch(app.clone()));
         parts.spawn(schedule::run(app.clone(), state.plan_slots.clone()));
@@ -207,6 +207,8 @@ fn start_log(json: bool) {
         .unwrap_or_else(|_| EnvFilter::new("info,sqlx=warn,tower_http=warn"));
     let log = tracing_subscriber::fmt()
         .with_env_filter(filter)
+        // Colours are for a terminal: files and collectors of logs get none.
+        .with_ansi(std::io::stderr().is_terminal())
         .with_writer(std::io::stderr);
     if json {
         log.json().init();

@@ -131,38 +131,57 @@ fn for_people() -> OpenApiRouter<ServerState> {
 
 /// Returns the OpenAPI document.
 pub fn openapi() -> utoipa::openapi::OpenApi {
-    let (_, _, document) = parts();
-    document
+    Parts::new().document
 }
 
-/// Returns the routes of agents, those of people, and the document of both.
-fn parts() -> (
-    Router<ServerState>,
-    Router<ServerState>,
-    utoipa::openapi::OpenApi,
-) {
-    let (people, described) = OpenApiRouter::with_openapi(Document::openapi())
-        .nest("/api/v1", for_people())
-        .merge(health::router())
-        .split_for_parts();
-    let (agents, more) = OpenApiRouter::new()
-        .nest("/api/v1", for_agents())
-        .split_for_parts();
-    let mut document = described;
-    document.merge(more);
-    document::add_problem_fields::<NoModelFields>(&mut document);
-    document::add_problem_fields::<NotAdjustableFields>(&mut document);
-    document::correct_schemas(&mut document);
-    list_kinds(&mut document);
-    document::complete(&mut document);
-    let people = people
+/// Routes by who asks, and the document of all.
+struct Parts {
+    agents: Router<ServerState>,
+    people: Router<ServerState>,
+    health: Router<ServerState>,
+    document: utoipa::openapi::OpenApi,
+}
+
+impl Parts {
+    fn new() -> Parts {
+        let (people, mut document) = OpenApiRouter::with_openapi(Document::openapi())
+            .nest("/api/v1", for_people())
+            .split_for_parts();
+        let (health, of_health) = OpenApiRouter::new()
+            .merge(health::router())
+            .split_for_parts();
+        let (agents, of_agents) = OpenApiRouter::new()
+            .nest("/api/v1", for_agents())
+            .split_for_parts();
+        document.merge(of_health);
+        document.merge(of_agents);
+        complete(&mut document);
+        Parts {
+            agents,
+            people: with_dashboard(people),
+            health: health.layer(axum::middleware::from_fn(headers::add)),
+            document,
+        }
+    }
+}
+
+fn complete(document: &mut utoipa::openapi::OpenApi) {
+    document::add_problem_fields::<NoModelFields>(document);
+    document::add_problem_fields::<NotAdjustableFields>(document);
+    document::correct_schemas(document);
+    list_kinds(document);
+    document::complete(document);
+}
+
+/// Adds the readable document and the dashboard to the routes of people.
+fn with_dashboard(people: Router<ServerState>) -> Router<ServerState> {
+    people
         .route("/api/openapi.json", get(docs::document))
         .route("/api/docs", get(docs::page))
         .route("/api/{*rest}", get(no_such_route).fallback(no_such_route))
         .fallback(get(dashboard::serve))
         .layer(CompressionLayer::new())
-        .layer(axum::middleware::from_fn(headers::add));
-    (agents, people, document)
+        .layer(axum::middleware::from_fn(headers::add))
 }
 
 /// Lists the kinds that the capabilities declare in the schemas of their names.
@@ -199,17 +218,26 @@ fn span(request: &Request) -> Span {
     debug_span!("http", method = %request.method(), route)
 }
 
-/// Returns the router of the whole server.
+/// Returns the router of the process's role.
 pub fn router(state: ServerState) -> Router {
     let app = state.app.clone();
-    let (agents, mut people, _) = parts();
+    let role = app.config.role;
+    let parts = Parts::new();
+    let mut pages = parts.health;
+    pages = if role.serves_people() {
+        pages.merge(parts.people)
+    } else {
+        pages.fallback(no_such_route)
+    };
     if app.config.is_on_https() {
-        people = people.layer(axum::middleware::from_fn(headers::add_https_only));
+        pages = pages.layer(axum::middleware::from_fn(headers::add_https_only));
     }
     let refuse = axum::middleware::from_fn_with_state(app.clone(), cross_site::refuse);
-    Router::new()
-        .merge(agents)
-        .merge(people.layer(refuse))
+    let mut router = Router::new().merge(pages.layer(refuse));
+    if role.serves_agents() {
+        router = router.merge(parts.agents);
+    }
+    router
         .method_not_allowed_fallback(no_such_method)
         .layer(axum::middleware::from_fn_with_state(
             app.clone(),

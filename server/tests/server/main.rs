@@ -10,6 +10,7 @@ mod fit;
 mod migration;
 mod openapi;
 mod plan;
+mod roles;
 mod schedule;
 mod service_manager;
 mod validate;

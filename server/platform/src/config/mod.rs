@@ -3,7 +3,7 @@
 use crate::outbound::Reach;
 use crate::tls::Certificate;
 use binnacle_listener::Limits;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use sha2::{Digest, Sha256};
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -23,12 +23,46 @@ pub struct Database {
     pub database_url: String,
 }
 
+/// Part of the service that a process runs. Processes with different parts share one database.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Role {
+    /// Everything
+    #[default]
+    All,
+    /// Dashboard and API, for people and their programs
+    Api,
+    /// Uploads and enrolment of the agents
+    Ingest,
+    /// Analyses, schedules, and what is sent: mail, notifications, webhooks
+    Worker,
+}
+
+impl Role {
+    /// Returns true if the process serves people and their programs.
+    pub fn serves_people(self) -> bool {
+        matches!(self, Self::All | Self::Api)
+    }
+
+    /// Returns true if the process serves agents.
+    pub fn serves_agents(self) -> bool {
+        matches!(self, Self::All | Self::Ingest)
+    }
+
+    /// Returns true if the process works in the background.
+    pub fn works(self) -> bool {
+        matches!(self, Self::All | Self::Worker)
+    }
+}
+
 /// Settings of `serve`.
 #[derive(Clone, Debug, Args)]
 pub struct Serve {
     /// Database settings.
     #[command(flatten)]
     pub database: Database,
+    /// Part of the service that this process runs
+    #[arg(long, env = "BINNACLE_ROLE", value_enum, default_value_t)]
+    pub role: Role,
     /// Address and port to listen on; port 0 for any free one
     #[arg(long, env = "BINNACLE_LISTEN", default_value = "127.0.0.1:8080")]
     pub listen: SocketAddr,
@@ -71,7 +105,7 @@ pub struct Serve {
     #[arg(long, env = "BINNACLE_ANALYSIS_DELAY_S", default_value_t = 5,
           value_parser = clap::value_parser!(u32).range(0..=86_400))]
     pub analysis_delay_s: u32,
-    /// Analyses to run at once in this process; 0 leaves them to other processes
+    /// Analyses to run at once in this process; with 0 it neither analyses nor sends anything
     #[arg(long, env = "BINNACLE_ANALYSIS_WORKERS", default_value_t = 1,
           value_parser = clap::value_parser!(u16).range(0..=64))]
     pub analysis_workers: u16,
