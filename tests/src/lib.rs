@@ -15,6 +15,7 @@ pub mod server_process;
 pub mod ship;
 pub mod ship_and_server;
 pub mod ship_on_link;
+pub mod uploader;
 pub mod voyage;
 
 pub use eventually::eventually;
@@ -26,4 +27,5 @@ pub use server_process::ServerProcess;
 pub use ship::Ship;
 pub use ship_and_server::{Setup, ShipAndServer};
 pub use ship_on_link::ShipOnLink;
+pub use uploader::Uploader;
 pub use voyage::{Truth, Voyage};

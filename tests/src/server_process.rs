@@ -62,6 +62,41 @@ impl ServerProcess {
         tls: Option<&Certificates>,
     ) -> Result<ServerProcess> {
         let database = Database::create(engine, folder).await?;
+        ServerProcess::open_on(database, folder, address, tls).await
+    }
+
+    /// Starts a server on a database without tables.
+    ///
+    /// # Errors
+    /// Fails when it does not start.
+    pub async fn start_on(database: Database, folder: &Path) -> Result<ServerProcess> {
+        ServerProcess::open_on(database, folder, Ipv4Addr::LOCALHOST.into(), None).await
+    }
+
+    /// Starts a further server on the same database, which both use from now on.
+    ///
+    /// # Errors
+    /// Fails when it does not start.
+    pub async fn start_beside(&self, folder: &Path) -> Result<ServerProcess> {
+        let mut beside = ServerProcess {
+            url: String::new(),
+            database: Database::at(self.database.url().to_owned()),
+            folder: folder.to_owned(),
+            process: None,
+            http: http_client(None)?,
+            tls: None,
+            cookie: self.cookie.clone(),
+        };
+        beside.serve("127.0.0.1:0").await?;
+        Ok(beside)
+    }
+
+    async fn open_on(
+        database: Database,
+        folder: &Path,
+        address: IpAddr,
+        tls: Option<&Certificates>,
+    ) -> Result<ServerProcess> {
         let mut server = ServerProcess {
             url: String::new(),
             database,

@@ -3,77 +3,16 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Context, Result, ensure};
-use binnacle_compass::angle::{CompassHeading, TrueHeading};
-use binnacle_compass::position::Position;
-use binnacle_compass::sample::Sample;
-use binnacle_compass::time::Timestamp;
-use binnacle_tests::{Engine, ServerProcess, eventually};
-use binnacle_wire::batch::{Batch, StreamId};
-use binnacle_wire::encode;
-use binnacle_wire::messages::{EnrolRequest, EnrolResponse};
+use binnacle_tests::uploader::{frame, samples};
+use binnacle_tests::{Engine, ServerProcess, Uploader, eventually};
+use binnacle_wire::batch::StreamId;
 use reqwest::{Method, StatusCode};
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::time::Duration;
 use uuid::Uuid;
 
 /// Time for an analysis of a dozen samples on a busy machine.
 const TIMEOUT: Duration = Duration::from_mins(1);
-
-/// An agent without a ship: this test sends its batches.
-struct Agent {
-    vessel: String,
-    token: String,
-    stream: StreamId,
-}
-
-async fn enrol(server: &ServerProcess, name: &str) -> Result<Agent> {
-    let (vessel, code) = server.create_vessel(name).await?;
-    let request = EnrolRequest {
-        code,
-        agent_version: "0.0.0".to_owned(),
-    };
-    let answer = server
-        .anonymous(Method::POST, "/agents/enrol")
-        .json(&request)
-        .send()
-        .await?;
-    let answer: EnrolResponse = answer.error_for_status()?.json().await?;
-    Ok(Agent {
-        vessel,
-        token: answer.token,
-        stream: answer.stream,
-    })
-}
-
-fn samples(count: usize) -> Vec<Sample> {
-    let start = Timestamp::parse("2026-11-20T00:00:05Z").unwrap();
-    (0..count)
-        .map(|i| Sample {
-            gyro: TrueHeading::new(31.0 * i as f64 - 3.0),
-            sog_kn: Some(12.0),
-            spread_deg: Some(0.3),
-            windows: 60,
-            ..Sample::new(
-                start.plus_seconds(600.0 * i as f64),
-                Position::new(48.0, -6.0).unwrap(),
-                CompassHeading::new(31.0 * i as f64).unwrap(),
-            )
-        })
-        .collect()
-}
-
-fn frame(stream: StreamId, seq: u64, samples: Vec<Sample>) -> Vec<u8> {
-    encode(&Batch {
-        stream,
-        seq,
-        samples,
-        tally: BTreeMap::new(),
-        alerts: Vec::new(),
-        thinned: None,
-    })
-    .unwrap()
-}
 
 /// Sends a frame and returns the status and the problem.
 async fn put(
@@ -110,7 +49,7 @@ async fn put(
     Ok((status, body))
 }
 
-async fn assert_nothing_stored(server: &mut ServerProcess, agent: &Agent) -> Result<()> {
+async fn assert_nothing_stored(server: &mut ServerProcess, agent: &Uploader) -> Result<()> {
     server.assert_healthy().await?;
     let path = format!("/streams/{}/downlink", agent.stream);
     let downlink = server
@@ -136,8 +75,8 @@ struct Attempt<'a> {
     expected: &'static [u16],
 }
 
-fn attempts<'a>(ours: &'a Agent, other: &'a Agent) -> Vec<Attempt<'a>> {
-    let good = || frame(ours.stream, 1, samples(12));
+fn attempts<'a>(ours: &'a Uploader, other: &'a Uploader) -> Vec<Attempt<'a>> {
+    let good = || frame(ours.stream, 1, samples(0, 12).unwrap()).unwrap();
     let mut flipped = good();
     flipped[40] ^= 0x10;
     let attempt = |name: &'static str, body| Attempt {
@@ -159,7 +98,10 @@ fn attempts<'a>(ours: &'a Agent, other: &'a Agent) -> Vec<Attempt<'a>> {
         attempt("half a batch", good()[..30].to_vec()),
         attempt("nothing", Vec::new()),
         attempt("something else", b"{\"samples\":[]}".to_vec()),
-        attempt("another stream's batch", frame(other.stream, 1, samples(3))),
+        attempt(
+            "another stream's batch",
+            frame(other.stream, 1, samples(0, 3).unwrap()).unwrap(),
+        ),
         Attempt {
             seq: 2,
             ..attempt("another number", good())
@@ -167,7 +109,10 @@ fn attempts<'a>(ours: &'a Agent, other: &'a Agent) -> Vec<Attempt<'a>> {
         Attempt {
             stream: unknown,
             expected: &[404],
-            ..attempt("an unknown stream", frame(unknown, 1, samples(3)))
+            ..attempt(
+                "an unknown stream",
+                frame(unknown, 1, samples(0, 3).unwrap()).unwrap(),
+            )
         },
         Attempt {
             expected: &[413],
@@ -180,19 +125,19 @@ fn attempts<'a>(ours: &'a Agent, other: &'a Agent) -> Vec<Attempt<'a>> {
 }
 
 /// The real batch, sent once, again, and changed.
-async fn assert_stored_once(server: &ServerProcess, ours: &Agent) -> Result<()> {
+async fn assert_stored_once(server: &ServerProcess, ours: &Uploader) -> Result<()> {
     let send = async |samples| {
-        let body = frame(ours.stream, 1, samples);
+        let body = frame(ours.stream, 1, samples).unwrap();
         put(server, Some(&ours.token), ours.stream, 1, body).await
     };
     for _ in 0..2 {
-        let (status, answer) = send(samples(12)).await?;
+        let (status, answer) = send(samples(0, 12).unwrap()).await?;
         ensure!(
             status == StatusCode::OK && answer["contiguous_seq"] == 1,
             "{status} {answer}"
         );
     }
-    let (status, problem) = send(samples(13)).await?;
+    let (status, problem) = send(samples(0, 13).unwrap()).await?;
     let kind = problem["type"].as_str().unwrap_or_default();
     ensure!(
         status == StatusCode::CONFLICT && kind.ends_with("/stream-forked"),
@@ -239,8 +184,8 @@ async fn assert_strangers_see_nothing(server: &ServerProcess, vessel: &str) -> R
 async fn bad_uploads(engine: Engine) -> Result<()> {
     let folder = tempfile::tempdir()?;
     let mut server = ServerProcess::start(engine, folder.path()).await?;
-    let ours = enrol(&server, "Ours").await?;
-    let other = enrol(&server, "Other").await?;
+    let ours = Uploader::enrol(&server, "Ours").await?;
+    let other = Uploader::enrol(&server, "Other").await?;
     for attempt in attempts(&ours, &other) {
         let Attempt {
             name,

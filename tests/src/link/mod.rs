@@ -2,4 +2,5 @@
 
 pub mod chains;
 pub mod gateway;
+pub mod relay;
 pub mod satellite;

@@ -50,6 +50,11 @@ impl Database {
         })
     }
 
+    /// Names a database that somebody else made and removes.
+    pub fn at(url: String) -> Database {
+        Database { url, created: None }
+    }
+
     /// The URL for `--database-url`.
     pub fn url(&self) -> &str {
         &self.url
