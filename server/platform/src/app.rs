@@ -5,9 +5,10 @@ use crate::config::Serve;
 use crate::db::{Db, Pools};
 use crate::events::{Event, Live};
 use crate::identity_provider::Provider;
+use crate::password::Hashing;
 use metrics_exporter_prometheus::PrometheusHandle;
 use std::sync::Arc;
-use tokio::sync::{Notify, Semaphore};
+use tokio::sync::Notify;
 use tokio_util::sync::CancellationToken;
 
 /// Application state: cheap to clone, one per process and one per test.
@@ -23,8 +24,8 @@ pub struct App {
     pub live: Live,
     /// Wakes the worker when there is a new job.
     pub work: Arc<Notify>,
-    /// Limit on concurrent password hashing: each takes 19 MB and a core.
-    pub hashing: Arc<Semaphore>,
+    /// Hashing of passwords, by a few at a time.
+    pub hashing: Arc<Hashing>,
     /// Cached metadata of the OpenID Connect provider.
     pub provider: Arc<Provider>,
     /// Token that is cancelled when the server is to stop.
@@ -42,7 +43,7 @@ impl App {
             config: Arc::new(config),
             live: Live::new(),
             work: Arc::new(Notify::new()),
-            hashing: Arc::new(Semaphore::new(2)),
+            hashing: Arc::default(),
             provider: Arc::default(),
             stopping: CancellationToken::new(),
             metrics,

@@ -3,9 +3,8 @@
 //! Invariants: a password is hashed by Argon2id with its own salt. A token has at least 128
 //! random bits, so that a plain SHA-256 is enough.
 
-use argon2::Argon2;
-use argon2::password_hash::phc::PasswordHash;
-use argon2::password_hash::{PasswordHasher, PasswordVerifier};
+use argon2::password_hash::phc::{Output, PasswordHash, Salt};
+use argon2::{Algorithm, Argon2, Block, Params, Version};
 use rand::{RngExt, rng};
 use sha2::{Digest, Sha256};
 use uuid::Uuid;
@@ -83,28 +82,73 @@ pub fn new_password() -> String {
     base64url(&rng().random::<[u8; 12]>())
 }
 
+/// Memory in which passwords are hashed, one after the other.
+#[derive(Debug, Default)]
+pub struct HashMemory(Vec<Block>);
+
 /// Hashes a password; takes tens of milliseconds, so not for an async thread.
 ///
 /// # Errors
-/// Fails when the machine has no random source or too little memory.
-pub fn hash_password(password: &str) -> anyhow::Result<String> {
-    let hash = Argon2::default().hash_password(password.as_bytes())?;
-    Ok(hash.to_string())
+/// Fails when the password is longer than Argon2 allows.
+pub fn hash_password(password: &str, memory: &mut HashMemory) -> anyhow::Result<String> {
+    let (algorithm, version, params) = Default::default();
+    let salt = Salt::new(&random::<{ Salt::RECOMMENDED_LENGTH }>())?;
+    let argon2 = Argon2::new(algorithm, version, params);
+    let hash = derive(&argon2, password, &salt, Params::DEFAULT_OUTPUT_LEN, memory)?;
+    let hashed = PasswordHash {
+        algorithm: algorithm.ident(),
+        version: Some(version.into()),
+        params: argon2.params().try_into()?,
+        salt: Some(salt),
+        hash: Some(hash),
+    };
+    Ok(hashed.to_string())
 }
 
 /// Checks a password against a stored hash. Takes as long without a hash, so that the timing
 /// does not reveal which e-mail addresses exist.
-pub fn password_matches(password: &str, stored: Option<&str>) -> bool {
+pub fn password_matches(password: &str, stored: Option<&str>, memory: &mut HashMemory) -> bool {
     // A user with an open invitation has no hash either.
     let Some(stored) = stored.filter(|stored| !stored.is_empty()) else {
-        let _ = Argon2::default().hash_password(password.as_bytes());
+        let _ = hash_password(password, memory);
         return false;
     };
-    PasswordHash::new(stored).is_ok_and(|hash| {
-        Argon2::default()
-            .verify_password(password.as_bytes(), &hash)
-            .is_ok()
-    })
+    is_hash_of(password, stored, memory).unwrap_or(false)
+}
+
+fn is_hash_of(password: &str, stored: &str, memory: &mut HashMemory) -> anyhow::Result<bool> {
+    let stored = PasswordHash::new(stored)?;
+    let (Some(salt), Some(hash)) = (stored.salt, stored.hash) else {
+        return Ok(false);
+    };
+    let version = stored.version.map(Version::try_from).transpose()?;
+    let argon2 = Argon2::new(
+        Algorithm::try_from(stored.algorithm.as_str())?,
+        version.unwrap_or_default(),
+        Params::try_from(&stored)?,
+    );
+    // The comparison takes the same time wherever they differ.
+    Ok(derive(&argon2, password, &salt, hash.len(), memory)? == hash)
+}
+
+/// Returns Argon2's output of `length` bytes for a password and a salt.
+fn derive(
+    argon2: &Argon2<'_>,
+    password: &str,
+    salt: &Salt,
+    length: usize,
+    memory: &mut HashMemory,
+) -> anyhow::Result<Output> {
+    let blocks = argon2.params().block_count();
+    memory.0.resize(blocks, Block::default());
+    let mut output = vec![0; length];
+    argon2.hash_password_into_with_memory(
+        password.as_bytes(),
+        salt,
+        &mut output,
+        memory.0.as_mut_slice(),
+    )?;
+    Ok(Output::new(&output)?)
 }
 
 const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
@@ -144,6 +188,35 @@ fn from_base64url(text: &str) -> Option<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use argon2::{PasswordHasher, PasswordVerifier};
+
+    #[test]
+    fn hashes_are_those_of_the_library_in_memory_that_was_used() {
+        let mut memory = HashMemory::default();
+        let (right, wrong) = ("nine bells at noon", "eight bells at noon");
+        let ours = hash_password(right, &mut memory).unwrap();
+        assert!(
+            ours.starts_with("$argon2id$v=19$m=19456,t=2,p=1$"),
+            "{ours}"
+        );
+        assert!(
+            Argon2::default()
+                .verify_password(right.as_bytes(), ours.as_str())
+                .is_ok()
+        );
+        let theirs = Argon2::default().hash_password(right.as_bytes()).unwrap();
+        for stored in [ours, theirs.to_string()] {
+            assert!(password_matches(right, Some(&stored), &mut memory));
+            assert!(!password_matches(wrong, Some(&stored), &mut memory));
+        }
+        for stored in [
+            None,
+            Some(""),
+            Some("$argon2id$v=19$m=19456,t=2,p=1$c2FsdHNhbHQ"),
+        ] {
+            assert!(!password_matches(right, stored, &mut memory));
+        }
+    }
 
     #[test]
     fn a_vessel_token_names_its_vessel() {
@@ -175,14 +248,5 @@ mod tests {
             normal_code(&code.to_lowercase().replace('-', " ")),
             normal_code(&code)
         );
-    }
-
-    #[test]
-    fn a_password_matches_only_its_own_hash() {
-        let stored = hash_password("correct horse").unwrap();
-        assert!(stored.starts_with("$argon2id$"));
-        assert!(password_matches("correct horse", Some(&stored)));
-        assert!(!password_matches("wrong horse", Some(&stored)));
-        assert!(!password_matches("correct horse", None));
     }
 }

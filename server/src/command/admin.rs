@@ -12,10 +12,11 @@ use binnacle_platform::clock::Clock;
 use binnacle_platform::db::{Db, Tx};
 use binnacle_platform::error::Error;
 use binnacle_platform::ids::{AgentId, FirmId, OperatorId, VesselId};
+use binnacle_platform::secret::{self, HashMemory};
 use binnacle_platform::session::{self, Role};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
-use binnacle_platform::{http, password, secret, users};
+use binnacle_platform::{http, password, users};
 use serde_json::json;
 use std::io::Read;
 use std::process::ExitCode;
@@ -177,7 +178,8 @@ async fn create_user(
         Ok(password) => password,
         Err(message) => return Ok(Err(message)),
     };
-    let hash = secret::hash_password(password.as_deref().unwrap_or_default())?;
+    let password_or_none = password.as_deref().unwrap_or_default();
+    let hash = secret::hash_password(password_or_none, &mut HashMemory::default())?;
     let mut tx = request.begin().await?;
     if let Some(missing) = missing(&mut tx, tenant).await? {
         return Ok(Err(missing));

@@ -3,7 +3,7 @@
 use crate::server::{PASSWORD, TestServer};
 use binnacle_orders::firms;
 use binnacle_platform::ids::{FirmId, OperatorId};
-use binnacle_platform::secret;
+use binnacle_platform::secret::{self, HashMemory};
 use binnacle_platform::session::{self, Role};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
@@ -71,7 +71,7 @@ impl ApiResponse {
 /// Returns the hash of [`PASSWORD`], computed once because hashing is slow.
 pub fn password_hash() -> &'static str {
     static HASH: OnceLock<String> = OnceLock::new();
-    HASH.get_or_init(|| secret::hash_password(PASSWORD).unwrap())
+    HASH.get_or_init(|| secret::hash_password(PASSWORD, &mut HashMemory::default()).unwrap())
 }
 
 impl TestServer {

@@ -12,7 +12,7 @@ use crate::http::{Json, Params, Valid};
 use crate::session::throttle::{self, Subjects};
 use crate::session::{self, User, normal_email};
 use crate::time::Time;
-use crate::{password, second_factor, secret};
+use crate::{second_factor, secret};
 use axum::extract::{FromRef, State};
 use axum::http::header::{LOCATION, SET_COOKIE};
 use axum::http::{HeaderMap, HeaderValue, StatusCode};
@@ -152,7 +152,7 @@ async fn send_code(
     request.record_actor(&user);
     let subjects = Subjects::person(&user.email, &from);
     // As with passwords, simultaneous guesses must not escape the count.
-    let _permit = password::acquire_permit(&app).await?;
+    let _permit = app.hashing.acquire().await?;
     throttle::check(&app.db, &subjects, now).await?;
     if !second_factor::use_code(&request, user.user_id, &sent.code, now).await? {
         throttle::note_failure(&request, &subjects, now).await?;

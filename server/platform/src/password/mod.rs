@@ -3,11 +3,11 @@
 //! character classes is required, and no password expires.
 
 mod common;
+mod hashing;
 
-use crate::app::App;
+pub use hashing::{Hashing, Permit};
+
 use crate::error::{Error, Result};
-use crate::secret;
-use tokio::sync::OwnedSemaphorePermit;
 
 /// Minimum length, characters.
 pub const MIN_LENGTH: usize = 12;
@@ -67,45 +67,6 @@ fn count_unguessed(password: &str, about: &[&str]) -> usize {
     let goes_on = |pair: &[char]| u32::from(pair[0]).abs_diff(u32::from(pair[1])) <= 1;
     let rows = letters.windows(2).filter(|pair| goes_on(pair)).count();
     letters.len() - rows
-}
-
-/// Acquires a permit for hashing: each hash takes 19 MB and a core.
-///
-/// # Errors
-/// Fails when the server is stopping.
-pub async fn acquire_permit(app: &App) -> Result<OwnedSemaphorePermit> {
-    let permit = app.hashing.clone().acquire_owned().await;
-    Ok(permit.map_err(anyhow::Error::from)?)
-}
-
-/// Checks a password. The permit moves into the task, so that it is held while the hashing
-/// lasts, even if nobody waits for the result any more.
-///
-/// # Errors
-/// Fails when the server is stopping.
-pub async fn matches(
-    permit: OwnedSemaphorePermit,
-    password: String,
-    stored: Option<String>,
-) -> Result<(bool, OwnedSemaphorePermit)> {
-    let matches = tokio::task::spawn_blocking(move || {
-        let matches = secret::password_matches(&password, stored.as_deref());
-        (matches, permit)
-    });
-    Ok(matches.await?)
-}
-
-/// Returns the hash of a password, as it is stored.
-///
-/// # Errors
-/// Fails when there is too little memory.
-pub async fn hash(permit: OwnedSemaphorePermit, password: String) -> Result<String> {
-    let hashed = tokio::task::spawn_blocking(move || {
-        let hashed = secret::hash_password(&password);
-        drop(permit);
-        hashed
-    });
-    Ok(hashed.await??)
 }
 
 #[cfg(test)]

@@ -52,13 +52,13 @@ pub(crate) async fn check_password(
     let now = app.clock.now();
     let subjects = Subjects::person(email, from);
     throttle::check(&app.db, &subjects, now).await?;
-    let permit = password::acquire_permit(app).await?;
+    let permit = app.hashing.acquire().await?;
     // Others may have failed while this attempt waited. Each holds its permit until its failure
     // is noted, so that simultaneous guesses cannot escape the count.
     throttle::check(&app.db, &subjects, now).await?;
     let found = store::find_by_email(&app.db, email).await?;
     let (user, stored) = found.map_or((None, None), |(user, hash)| (Some(user), Some(hash)));
-    let (matches, permit) = password::matches(permit, password, stored).await?;
+    let (matches, permit) = permit.matches(password, stored).await?;
     if let Some(user) = user.filter(|_| matches) {
         return Ok(user);
     }

@@ -123,7 +123,7 @@ async fn change_password(
             detail: "is your current password".to_owned(),
         });
     }
-    let hash = password::hash(password::acquire_permit(&app).await?, change.new).await?;
+    let hash = app.hashing.acquire().await?.hash(change.new).await?;
     let mut tx = request.begin().await?;
     session::set_password(&mut tx, user.user_id, &hash).await?;
     session::end_all(&mut tx, user.user_id, Some(session)).await?;

@@ -137,7 +137,12 @@ async fn accept_invitation(
     let company = invited.company.as_deref().unwrap_or_default();
     let about = [invited.email.as_str(), &invited.name, company];
     password::check("password", &acceptance.password, &about)?;
-    let hash = password::hash(password::acquire_permit(&app).await?, acceptance.password).await?;
+    let hash = app
+        .hashing
+        .acquire()
+        .await?
+        .hash(acceptance.password)
+        .await?;
     let mut tx = request.begin().await?;
     let used = execute!(
         &mut tx,
