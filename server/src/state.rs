@@ -7,6 +7,7 @@ use binnacle_orders::berth_session::CorrectorPlanSlots;
 use binnacle_planning::notifications::NoticeKinds;
 use binnacle_planning::schedule::PlanSlots;
 use binnacle_platform::app::App;
+use binnacle_platform::db::Workload;
 use binnacle_platform::mail::TopicList;
 use binnacle_platform::webhooks::MessageKinds;
 
@@ -34,6 +35,15 @@ impl ServerState {
             corrector_plan_slots: CorrectorPlanSlots::default(),
             message_kinds: message_kinds(),
             notice_kinds: notice_kinds(),
+        }
+    }
+
+    /// Returns the same state, by the database connections of a workload.
+    #[must_use]
+    pub fn for_workload(&self, workload: Workload) -> ServerState {
+        ServerState {
+            app: self.app.for_workload(workload),
+            ..self.clone()
         }
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::clock::Clock;
 use crate::config::Serve;
-use crate::db::{Db, Pools};
-use crate::events::{Event, Live};
+use crate::db::{Db, Pools, Workload};
+use crate::events::{Announcer, Event, Live, Places};
 use crate::identity_provider::Provider;
+use crate::outage::Disk;
 use crate::password::Hashing;
 use metrics_exporter_prometheus::PrometheusHandle;
 use std::sync::Arc;
@@ -16,12 +17,18 @@ use tokio_util::sync::CancellationToken;
 pub struct App {
     /// The database.
     pub db: Db,
+    /// State of the database's disk.
+    pub disk: Arc<Disk>,
     /// Source of the current time.
     pub clock: Clock,
     /// Settings of `serve`.
     pub config: Arc<Serve>,
     /// Live event channel to this process's dashboards.
     pub live: Live,
+    /// Streams of live events that are open.
+    pub event_streams: Places,
+    /// Events to be announced to other processes.
+    pub announcer: Arc<Announcer>,
     /// Wakes the worker when there is a new job.
     pub work: Arc<Notify>,
     /// Hashing of passwords, by a few at a time.
@@ -39,9 +46,12 @@ impl App {
     pub fn new(db: Db, clock: Clock, config: Serve, metrics: PrometheusHandle) -> App {
         App {
             db,
+            disk: Arc::default(),
             clock,
             config: Arc::new(config),
             live: Live::new(),
+            event_streams: Places::default(),
+            announcer: Arc::default(),
             work: Arc::new(Notify::new()),
             hashing: Arc::default(),
             provider: Arc::default(),
@@ -50,17 +60,26 @@ impl App {
         }
     }
 
+    /// Returns the same application, by the database connections of a workload.
+    #[must_use]
+    pub fn for_workload(&self, workload: Workload) -> App {
+        App {
+            db: self.db.for_workload(workload),
+            ..self.clone()
+        }
+    }
+
     /// Returns the seconds without a request after which a session ends.
     pub fn idle_s(&self) -> f64 {
         f64::from(self.config.session_idle_hours) * 3600.0
     }
 
-    /// Publishes an event whose transaction was committed, to this process. On PostgreSQL
-    /// the commit itself has notified all processes.
+    /// Publishes an event whose transaction was committed.
     pub fn publish(&self, event: Event) {
-        if matches!(self.db.pools(), Pools::Sqlite { .. }) {
-            self.live.send(event);
-            self.work.notify_one();
+        if matches!(self.db.pools(), Pools::Postgres(_)) {
+            self.announcer.push(event.clone());
         }
+        self.live.send(event);
+        self.work.notify_one();
     }
 }

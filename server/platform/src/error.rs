@@ -3,13 +3,16 @@
 //! Invariants: an internal failure is logged here once and never sent. This module knows no
 //! domain: a domain's refusal becomes a [`DomainProblem`] by its own conversion.
 
+use crate::outage::Outage;
 use axum::Json;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use rand::RngExt;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt;
-use tracing::error;
+use std::ops::RangeInclusive;
+use tracing::{debug, error};
 use utoipa::ToSchema;
 
 /// Failure of a request, as every handler returns it.
@@ -71,6 +74,21 @@ pub enum Error {
     /// Too many wrong passwords.
     #[error("too many failed attempts; try again in {retry_after_s} s")]
     Throttled {
+        /// Seconds to wait.
+        retry_after_s: u64,
+    },
+    /// Too many open streams of events.
+    #[error("you have {0} streams of live events open already; close one")]
+    TooManyStreams(usize),
+    /// Database that does not respond, or has more to do than it can.
+    #[error("the server is busy, or its database does not respond; try again in {retry_after_s} s")]
+    Unavailable {
+        /// Seconds to wait.
+        retry_after_s: u64,
+    },
+    /// Disk of the database without space.
+    #[error("the server's disk is full; nothing was stored; try again in {retry_after_s} s")]
+    DiskFull {
         /// Seconds to wait.
         retry_after_s: u64,
     },
@@ -196,6 +214,17 @@ impl Error {
                 "throttled",
                 "Too many attempts",
             ),
+            Error::TooManyStreams(_) => (
+                StatusCode::TOO_MANY_REQUESTS,
+                "too-many-streams",
+                "Too many streams",
+            ),
+            Error::Unavailable { .. } => (
+                StatusCode::SERVICE_UNAVAILABLE,
+                "unavailable",
+                "Not available now",
+            ),
+            Error::DiskFull { .. } => (StatusCode::INSUFFICIENT_STORAGE, "disk-full", "Disk full"),
             Error::MethodNotAllowed => (
                 StatusCode::METHOD_NOT_ALLOWED,
                 "method-not-allowed",
@@ -232,7 +261,10 @@ impl IntoResponse for Error {
             header::CONTENT_TYPE,
             HeaderValue::from_static("application/problem+json"),
         );
-        if let Error::Throttled { retry_after_s } = self {
+        if let Error::Throttled { retry_after_s }
+        | Error::Unavailable { retry_after_s }
+        | Error::DiskFull { retry_after_s } = self
+        {
             headers.insert(header::RETRY_AFTER, HeaderValue::from(retry_after_s));
         }
         response
@@ -241,7 +273,20 @@ impl IntoResponse for Error {
 
 impl From<sqlx::Error> for Error {
     fn from(error: sqlx::Error) -> Error {
-        Error::Internal(error.into())
+        let Some(outage) = Outage::of(&error) else {
+            return Error::Internal(error.into());
+        };
+        debug!(%error, "the database cannot work now");
+        // Clients that were refused together must not return together.
+        let spread = |seconds: RangeInclusive<u64>| rand::rng().random_range(seconds);
+        match outage {
+            Outage::Unavailable => Error::Unavailable {
+                retry_after_s: spread(5..=30),
+            },
+            Outage::DiskFull => Error::DiskFull {
+                retry_after_s: spread(60..=180),
+            },
+        }
     }
 }
 
@@ -254,7 +299,10 @@ impl From<serde_json::Error> for Error {
 
 impl From<anyhow::Error> for Error {
     fn from(error: anyhow::Error) -> Error {
-        Error::Internal(error)
+        match error.downcast::<sqlx::Error>() {
+            Ok(error) => error.into(),
+            Err(error) => Error::Internal(error),
+        }
     }
 }
 

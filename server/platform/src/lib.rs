@@ -18,6 +18,7 @@ pub mod config;
 pub mod db;
 pub mod error;
 pub mod ids;
+pub mod outage;
 pub mod severity;
 pub mod time;
 

@@ -12,7 +12,7 @@ use binnacle_platform::app::App;
 use binnacle_platform::clock::Clock;
 use binnacle_platform::config::{Database, Serve};
 use binnacle_platform::db::Db;
-use binnacle_platform::event_stream::EventListener;
+use binnacle_platform::event_stream::{EventListener, announce as announce_events};
 use binnacle_platform::mail::Mailer;
 use binnacle_platform::tls::TlsAcceptor;
 use binnacle_platform::{audit, outbox, webhooks};
@@ -68,6 +68,8 @@ pub async fn run(app: App, listener: TcpListener, tls: Option<TlsAcceptor>) -> R
     let mut parts = JoinSet::new();
     let events = EventListener::open(&app.db).await?;
     parts.spawn(events.listen(app.clone()));
+    parts.spawn(announce_events(app.clone()));
+    parts.spawn(health::disk::watch(app.clone(), mailer.clone()));
     if app.config.role.works() && app.config.analysis_workers > 0 {
         let outdated = analysis_queue::enqueue_outdated(&app.db, app.clock.now().into()).await?;
         if outdated > 0 {
@@ -105,7 +107,7 @@ pub async fn run(app: App, listener: TcpListener, tls: Option<TlsAcceptor>) -> R
     parts.spawn(stop_on_signal(app.clone(), terminate));
     notify_service_manager(NotifyState::Ready);
     let limits = limits_of_connections(&app);
-    let (router, stopping) = (routes::router(state), app.stopping.clone());
+    let (router, stopping) = (routes::router(&state), app.stopping.clone());
     let cut_off = match tls {
         Some(tls) => {
             let handshake = |stream| tls.accept(stream);

@@ -1,18 +1,30 @@
 //! Health and metrics.
 
+pub mod disk;
+
 use axum::extract::{FromRef, MatchedPath, Request, State};
 use axum::http::header::{AUTHORIZATION, FORWARDED};
 use axum::http::{HeaderMap, HeaderName, StatusCode};
 use axum::middleware::Next;
 use axum::response::Response;
+use binnacle_fleet::analysis_queue;
 use binnacle_platform::app::App;
 use binnacle_platform::client_address::Origin;
+use binnacle_platform::db::Workload;
 use binnacle_platform::error::{Error, Problem, Result};
-use metrics::{counter, histogram};
+use metrics::{counter, gauge, histogram};
 use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
-use std::time::Instant;
+use std::time::{Duration, Instant};
+use tokio::time::timeout;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
+
+/// Wait of a due analysis beyond which the readiness check mentions it, seconds: more workers are
+/// needed, or they have died.
+const LONG_WAIT_S: f64 = 600.0;
+
+/// Time in which the database must respond for the server to be ready.
+const READY_WITHIN: Duration = Duration::from_millis(900);
 
 /// Routes of health checks and metrics.
 pub fn router<S>() -> OpenApiRouter<S>
@@ -47,17 +59,27 @@ async fn healthz() -> &'static str {
 /// Check whether requests can be served
 #[utoipa::path(get, path = "/readyz", tag = "operations", security(()),
     responses((status = 200, body = String), (status = 503, body = String)))]
-async fn readyz(State(app): State<App>) -> (StatusCode, &'static str) {
+async fn readyz(State(app): State<App>) -> (StatusCode, String) {
+    let unavailable = |reason: &str| (StatusCode::SERVICE_UNAVAILABLE, reason.to_owned());
     if app.stopping.is_cancelled() {
-        return (StatusCode::SERVICE_UNAVAILABLE, "stopping");
+        return unavailable("stopping");
     }
-    match app.db.ping().await {
-        Ok(()) => (StatusCode::OK, "ready"),
-        Err(_) => (
-            StatusCode::SERVICE_UNAVAILABLE,
-            "the database does not respond",
-        ),
+    // Not by the connections for requests: many requests are no reason to send none.
+    let db = app.db.for_workload(Workload::Background);
+    let oldest_s = analysis_queue::oldest_wait_s(&db, app.clock.now().into());
+    let Ok(Ok(oldest_s)) = timeout(READY_WITHIN, oldest_s).await else {
+        return unavailable("the database does not respond");
+    };
+    let oldest_s = oldest_s.unwrap_or(0.0);
+    if app.disk.is_full() {
+        return unavailable("the disk of the database is full");
     }
+    // Requests are served all the same.
+    if oldest_s > LONG_WAIT_S {
+        let text = format!("ready, but an analysis has waited for {oldest_s:.0} s");
+        return (StatusCode::OK, text);
+    }
+    (StatusCode::OK, "ready".to_owned())
 }
 
 /// Metrics for Prometheus
@@ -74,10 +96,19 @@ async fn metrics_page(
     if !may_read_metrics(&app, &origin, &headers) {
         return Err(Error::Unauthenticated);
     }
-    let waiting = binnacle_fleet::analysis_queue::count(&app.db).await?;
+    let waiting = analysis_queue::count(&app.db).await?;
     for (state, jobs) in waiting {
-        metrics::gauge!("binnacle_jobs", "state" => state).set(jobs as f64);
+        gauge!("binnacle_jobs", "state" => state).set(jobs as f64);
     }
+    for usage in app.db.usage() {
+        let workload = usage.workload.name();
+        for (state, connections) in [("used", usage.used), ("most", usage.most)] {
+            gauge!("binnacle_database_connections", "workload" => workload, "state" => state)
+                .set(connections as f64);
+        }
+    }
+    let oldest_s = analysis_queue::oldest_wait_s(&app.db, app.clock.now().into()).await?;
+    gauge!("binnacle_oldest_job_seconds").set(oldest_s.unwrap_or(0.0));
     app.metrics.run_upkeep();
     Ok(app.metrics.render())
 }
@@ -98,8 +129,8 @@ fn may_read_metrics(app: &App, origin: &Origin, headers: &HeaderMap) -> bool {
     is_here && !is_forwarded
 }
 
-/// Counts and times every request by its route, never by its ids.
-pub async fn measure(request: Request, next: Next) -> Response {
+/// Counts and times every request by its route, never by its ids, and notices a full disk.
+pub async fn measure(State(app): State<App>, request: Request, next: Next) -> Response {
     let route = request
         .extensions()
         .get::<MatchedPath>()
@@ -108,6 +139,9 @@ pub async fn measure(request: Request, next: Next) -> Response {
     let method = request.method().as_str().to_owned();
     let begun = Instant::now();
     let response = next.run(request).await;
+    if response.status() == StatusCode::INSUFFICIENT_STORAGE {
+        app.disk.report_full();
+    }
     let status = response.status().as_u16().to_string();
     histogram!("binnacle_http_request_seconds", "route" => route.clone())
         .record(begun.elapsed().as_secs_f64());

@@ -102,6 +102,17 @@ fn object<'a>(document: &'a mut OpenApi, name: &str) -> &'a mut Object {
 /// Adds the details common to all operations.
 pub(super) fn complete(document: &mut OpenApi) {
     for path in document.paths.paths.values_mut() {
+        let changes = [
+            &mut path.post,
+            &mut path.put,
+            &mut path.patch,
+            &mut path.delete,
+        ];
+        for operation in changes.into_iter().flatten() {
+            add_problems(operation);
+            add_disk_full(operation);
+        }
+        path.get.iter_mut().for_each(add_problems);
         let all = [
             &mut path.get,
             &mut path.post,
@@ -110,7 +121,6 @@ pub(super) fn complete(document: &mut OpenApi) {
             &mut path.delete,
         ];
         for operation in all.into_iter().flatten() {
-            add_problems(operation);
             for (status, response) in &mut operation.responses.responses {
                 if let RefOr::T(response) = response {
                     describe(status, response);
@@ -120,7 +130,16 @@ pub(super) fn complete(document: &mut OpenApi) {
     }
 }
 
-/// Lists the problems for which a request may be refused before the operation runs.
+/// Lists the problem for which a change may fail.
+fn add_disk_full(operation: &mut Operation) {
+    let responses = &mut operation.responses.responses;
+    if let Some(problem) = responses.get("503").cloned() {
+        responses.insert("507".to_owned(), problem);
+    }
+}
+
+/// Lists the problems for which a request may be refused before the operation runs, or because
+/// the database does not respond.
 fn add_problems(operation: &mut Operation) {
     let responses = &mut operation.responses.responses;
     let Some(problem) = responses
@@ -149,6 +168,7 @@ fn add_problems(operation: &mut Operation) {
         ("413", body),
         ("415", json),
         ("422", json),
+        ("503", true),
     ] {
         if may_be && !responses.contains_key(status) {
             responses.insert(status.to_owned(), problem.clone());
@@ -160,13 +180,16 @@ fn describe(status: &str, response: &mut Response) {
     let Ok(status) = status.parse::<StatusCode>() else {
         return;
     };
+    // The health checks respond with text.
+    let is_json = response.content.contains_key("application/json");
+    let is_problem = status.is_client_error() || (status.is_server_error() && is_json);
     if response.description.is_empty() {
         status
             .canonical_reason()
             .unwrap_or("Response")
             .clone_into(&mut response.description);
     }
-    if status.is_client_error() {
+    if is_problem {
         let content = mem::take(&mut response.content).into_values();
         response.content = content
             .map(|content| ("application/problem+json".to_owned(), content))

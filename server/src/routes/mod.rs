@@ -20,6 +20,7 @@ use binnacle_fleet::{
 use binnacle_orders::work_orders::NotAdjustableFields;
 use binnacle_orders::{api as orders_api, firms};
 use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
+use binnacle_platform::db::Workload;
 use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers};
 use binnacle_platform::{
     audit, audit_api, error, event_stream, events, mail, oidc, session, session_api, users,
@@ -219,9 +220,9 @@ fn span(request: &Request) -> Span {
 }
 
 /// Returns the router of the process's role.
-pub fn router(state: ServerState) -> Router {
-    let app = state.app.clone();
-    let role = app.config.role;
+pub fn router(state: &ServerState) -> Router {
+    let config = &state.app.config;
+    let role = config.role;
     let parts = Parts::new();
     let mut pages = parts.health;
     pages = if role.serves_people() {
@@ -229,27 +230,33 @@ pub fn router(state: ServerState) -> Router {
     } else {
         pages.fallback(no_such_route)
     };
-    if app.config.is_on_https() {
+    if config.is_on_https() {
         pages = pages.layer(axum::middleware::from_fn(headers::add_https_only));
     }
-    let refuse = axum::middleware::from_fn_with_state(app.clone(), cross_site::refuse);
-    let mut router = Router::new().merge(pages.layer(refuse));
+    let refuse = axum::middleware::from_fn_with_state(state.app.clone(), cross_site::refuse);
+    let pages = pages.layer(refuse);
+    let mut router = served(pages, state.for_workload(Workload::People));
     if role.serves_agents() {
-        router = router.merge(parts.agents);
+        let agents = served(parts.agents, state.for_workload(Workload::Ingest));
+        router = router.merge(agents);
     }
     router
         .method_not_allowed_fallback(no_such_method)
-        .layer(axum::middleware::from_fn_with_state(
-            app.clone(),
-            audit::log_request,
-        ))
         .layer(DefaultBodyLimit::max(MAX_JSON_BYTES))
         .layer(TimeoutLayer::with_status_code(
             StatusCode::REQUEST_TIMEOUT,
             PATIENCE,
         ))
         .layer(CatchPanicLayer::custom(panicked))
-        .layer(axum::middleware::from_fn(health::measure))
+        .layer(axum::middleware::from_fn_with_state(
+            state.app.clone(),
+            health::measure,
+        ))
         .layer(TraceLayer::new_for_http().make_span_with(span))
-        .with_state(state)
+}
+
+/// Gives routes their state, and has their requests logged.
+fn served(routes: Router<ServerState>, state: ServerState) -> Router {
+    let log = axum::middleware::from_fn_with_state(state.app.clone(), audit::log_request);
+    routes.layer(log).with_state(state)
 }

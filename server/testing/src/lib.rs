@@ -27,7 +27,7 @@ mod ship;
 pub mod webhooks;
 pub mod work_orders;
 
-pub use database::Engine;
+pub use database::{Engine, Proxy};
 pub use person::{ApiResponse, Person, password_hash, patch, try_sign_in};
 pub use provider::{CLIENT_SECRET, Provider, Signer, provider_settings};
 pub use relay::{Behaviour, Encryption, Letter, Relay, Stage};

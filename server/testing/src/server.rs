@@ -1,6 +1,6 @@
 //! A running server for each test.
 
-use crate::database::{Database, Engine};
+use crate::database::{Database, Engine, Proxy};
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::app::App;
 use binnacle_platform::clock::Clock;
@@ -50,6 +50,14 @@ impl TestServer {
         let database = Database::new(engine).await;
         let clock = Clock::manual(Timestamp::parse(START).unwrap());
         TestServer::open(database, clock, settings).await
+    }
+
+    /// Starts a server on PostgreSQL behind a proxy, which the test may cut.
+    pub async fn start_behind_proxy() -> (TestServer, Proxy) {
+        let mut database = Database::new(Engine::Postgres).await;
+        let proxy = database.connect_through_proxy().await;
+        let clock = Clock::manual(Timestamp::parse(START).unwrap());
+        (TestServer::open(database, clock, &[]).await, proxy)
     }
 
     /// Creates a migrated database, before the server opens it.

@@ -1,9 +1,12 @@
 //! Live events.
 
+use binnacle_fleet::event_kinds;
+use binnacle_platform::app::App;
 use binnacle_platform::db::Pools;
-use binnacle_platform::events;
+use binnacle_platform::events::{self, STREAMS_OF_USER};
+use binnacle_platform::ids::VesselId;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{ApiResponse, Engine, Person, TestServer, passage};
+use binnacle_server_testing::{ApiResponse, Engine, Person, Ship, TestServer, passage};
 use futures_util::StreamExt;
 use reqwest::Method;
 use serde_json::json;
@@ -18,6 +21,7 @@ on_both!(
     a_revoked_token_and_an_ended_session_get_no_more_events,
     a_stopping_server_closes_its_event_streams,
     events_are_deleted_after_a_day,
+    a_user_has_no_more_event_streams_than_allowed,
 );
 
 #[tokio::test]
@@ -37,10 +41,45 @@ async fn a_lost_postgres_connection_is_restored_and_missed_events_are_sent() {
     .await
     .unwrap();
     assert_eq!(broken, [true]);
-    nao.put(1, &passage(DAY, 3)).await.good();
+    let other = server.second_server().await;
+    announce(&other, &nao).await;
     let (_, batch) = source.next().await.unwrap();
     assert!(batch.contains(&nao.id), "{batch}");
+    other.db.close().await;
     server.finish().await;
+}
+
+#[tokio::test]
+async fn a_dashboard_gets_events_of_another_server_once() {
+    let server = TestServer::start(Engine::Postgres).await;
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let mut source = EventSource::open(&ada, None).await;
+    let other = server.second_server().await;
+    announce(&other, &nao).await;
+    let (foreign, _) = source.next().await.unwrap();
+    // This server's own event is announced as well, to the other alone.
+    nao.put(1, &passage(DAY, 3)).await.good();
+    let (own, _) = source.next().await.unwrap();
+    announce(&other, &nao).await;
+    let (last, _) = source.next().await.unwrap();
+    let mut ids = [foreign, own, last];
+    ids.sort_unstable();
+    assert!(ids[0] != ids[1] && ids[1] != ids[2], "{ids:?}");
+    other.db.close().await;
+    server.finish().await;
+}
+
+/// Stores an event of a ship on a server, and announces it to the others.
+async fn announce(server: &App, ship: &Ship) {
+    let vessel = VesselId(ship.id.parse().unwrap());
+    let mut tx = server.db.begin().await.unwrap();
+    let now = server.clock.now().into();
+    let event = events::insert(&mut tx, vessel, event_kinds::BATCH, now).await;
+    tx.commit().await.unwrap();
+    server.publish(event.unwrap());
+    let announced = server.announcer.announce_pending(&server.db).await;
+    announced.unwrap();
 }
 
 const DAY: &str = "2026-11-15T00:00:00Z";
@@ -183,6 +222,34 @@ async fn a_revoked_token_and_an_ended_session_get_no_more_events(server: TestSer
     assert!(kept.next().await.is_some());
     assert_eq!(by_token.next().await, None);
     assert_eq!(by_session.next().await, None);
+    server.finish().await;
+}
+
+async fn a_user_has_no_more_event_streams_than_allowed(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let mut open = Vec::new();
+    for _ in 0..STREAMS_OF_USER {
+        open.push(EventSource::open(&ada, None).await);
+    }
+    let further = async || ApiResponse::send(ada.request(Method::GET, "/events")).await;
+    assert_eq!(further().await.problem(), "too-many-streams");
+    // Another user has streams of their own.
+    let grace = ada.viewer(&server).await;
+    drop(EventSource::open(&grace, None).await);
+    // Once one is closed there is room again: the server notices when it next sends something.
+    drop(open.pop());
+    let nao = server.ship(&ada, "Nao").await;
+    let reopened = async {
+        for seq in 1.. {
+            nao.put(seq, &passage(DAY, 3)).await.good();
+            let request = ada.request(Method::GET, "/events");
+            if request.send().await.unwrap().status() == 200 {
+                break;
+            }
+        }
+    };
+    let reopened = timeout(Duration::from_secs(20), reopened).await;
+    reopened.expect("room for a stream within 20 s");
     server.finish().await;
 }
 

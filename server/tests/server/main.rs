@@ -9,6 +9,7 @@ mod documentation_examples;
 mod fit;
 mod migration;
 mod openapi;
+mod outages;
 mod plan;
 mod roles;
 mod schedule;

@@ -17,15 +17,20 @@
 mod connect;
 mod queries;
 mod subscribers;
+mod workload;
 
 pub use crate::{execute, row, rows};
 pub use subscribers::{Answerer, DomainEvent, Handler, Question, Subscribers};
+pub use workload::{Usage, Workload};
 
 use crate::error;
 use futures_util::future::BoxFuture;
-use sqlx::{PgPool, Postgres, Sqlite, SqlitePool, Transaction};
+use metrics::histogram;
+use sqlx::{Database, PgPool, Pool, Postgres, Sqlite, SqlitePool, Transaction};
 use std::any::type_name;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
+use tokio::time::timeout;
 
 /// Result of a database call.
 pub type Result<T> = std::result::Result<T, sqlx::Error>;
@@ -33,7 +38,9 @@ pub type Result<T> = std::result::Result<T, sqlx::Error>;
 /// Database named by the URL, with the subscribers to events.
 #[derive(Clone, Debug)]
 pub struct Db {
-    pools: Pools,
+    /// Pools of each workload.
+    pools: Arc<[Pools; 3]>,
+    workload: Workload,
     subscribers: Arc<Subscribers>,
 }
 
@@ -82,14 +89,42 @@ pub trait CommitHook: Send + Sync {
 impl Db {
     /// Returns the connection pools, for features of one kind of database.
     pub fn pools(&self) -> &Pools {
-        &self.pools
+        &self.pools[self.workload as usize]
+    }
+
+    /// Returns the same database, by the connections of a workload.
+    #[must_use]
+    pub fn for_workload(&self, workload: Workload) -> Db {
+        Db {
+            workload,
+            ..self.clone()
+        }
+    }
+
+    /// Returns the connections of each workload; on SQLite its readers.
+    pub fn usage(&self) -> [Usage; 3] {
+        Workload::ALL.map(|workload| match &self.pools[workload as usize] {
+            Pools::Sqlite { readers, .. } => usage(workload, readers),
+            Pools::Postgres(pool) => usage(workload, pool),
+        })
     }
 
     /// Begins a writing transaction for work without a request. A request begins its own
     /// with `audit::RequestContext::begin`.
     pub async fn begin(&self) -> Result<Tx> {
-        let connection = match &self.pools {
-            Pools::Sqlite { writer, .. } => Connection::Sqlite(begin_sqlite(writer).await?),
+        let begun = Instant::now();
+        let tx = self.begin_now().await;
+        histogram!("binnacle_database_wait_seconds", "workload" => self.workload.name())
+            .record(begun.elapsed().as_secs_f64());
+        tx
+    }
+
+    async fn begin_now(&self) -> Result<Tx> {
+        let connection = match self.pools() {
+            Pools::Sqlite { writer, .. } => {
+                let patience = self.workload.patience_on_sqlite();
+                Connection::Sqlite(begin_sqlite(writer, patience).await?)
+            }
             Pools::Postgres(pool) => Connection::Postgres(pool.begin().await?),
         };
         Ok(Tx {
@@ -99,24 +134,38 @@ impl Db {
         })
     }
 
-    /// Checks that the database responds.
-    pub async fn ping(&self) -> Result<()> {
-        row!(self, (i64,), "SELECT CAST(1 AS BIGINT)").map(drop)
-    }
-
     /// Closes every connection once it is idle.
     pub async fn close(&self) {
-        match &self.pools {
-            Pools::Sqlite { readers, writer } => {
-                readers.close().await;
-                writer.close().await;
+        for pools in self.pools.iter() {
+            match pools {
+                Pools::Sqlite { readers, writer } => {
+                    readers.close().await;
+                    writer.close().await;
+                }
+                Pools::Postgres(pool) => pool.close().await,
             }
-            Pools::Postgres(pool) => pool.close().await,
         }
     }
 }
 
-async fn begin_sqlite(writer: &SqlitePool) -> Result<Transaction<'static, Sqlite>> {
+fn usage<D: Database>(workload: Workload, pool: &Pool<D>) -> Usage {
+    Usage {
+        workload,
+        used: (pool.size() as usize).saturating_sub(pool.num_idle()),
+        most: pool.options().get_max_connections() as usize,
+    }
+}
+
+/// Begins a transaction, which must wait no longer than `patience` for those before it.
+async fn begin_sqlite(
+    writer: &SqlitePool,
+    patience: Duration,
+) -> Result<Transaction<'static, Sqlite>> {
+    let begun = timeout(patience, begin_immediate(writer)).await;
+    begun.unwrap_or(Err(sqlx::Error::PoolTimedOut))
+}
+
+async fn begin_immediate(writer: &SqlitePool) -> Result<Transaction<'static, Sqlite>> {
     const BEGIN: &str = "BEGIN IMMEDIATE";
     match writer.begin_with(BEGIN).await {
         // In this version of sqlx, a transaction that SQLite itself has rolled back, as on

@@ -74,10 +74,14 @@ async fn forward(app: &App, mut listener: PgListener) -> sqlx::Error {
             Ok(None) => return sqlx::Error::PoolTimedOut,
             Err(error) => return error,
         };
-        match serde_json::from_str(notice.payload()) {
-            Ok(event) => app.live.send(event),
-            Err(error) => warn!(%error, "a live event cannot be read"),
+        match app.announcer.read(notice.payload()) {
+            Ok(events) => {
+                for event in events {
+                    app.live.send(event);
+                    app.work.notify_one();
+                }
+            }
+            Err(error) => warn!(%error, "live events cannot be read"),
         }
-        app.work.notify_one();
     }
 }

@@ -1,17 +1,21 @@
 //! Events that change what a dashboard shows.
 //!
 //! Invariants: an event is stored in the transaction that makes it true, and reaches the
-//! dashboards of every server process on the same database: on PostgreSQL through LISTEN
-//! and NOTIFY, on SQLite (one process) directly.
+//! dashboards of this process directly once it is committed, and those of other processes on
+//! the same PostgreSQL through LISTEN and NOTIFY.
 
+mod announcer;
 mod kind;
 mod live;
+mod places;
 mod store;
 
+pub use announcer::{Announcer, announce_all};
 pub use kind::Kind;
 pub use live::Live;
+pub use places::{Place, Places, STREAMS_OF_USER};
 pub(crate) use store::{CHANNEL, all_since, since};
-pub use store::{NewEvent, insert, insert_event, prune};
+pub use store::{NewEvent, insert, insert_event, insert_of, prune};
 
 use crate::db::DomainEvent;
 use crate::ids::{EventId, FirmId, OperatorId, VesselId};
@@ -51,6 +55,15 @@ pub struct EventStored {
 impl DomainEvent for EventStored {}
 
 impl Event {
+    /// Returns true if a dashboard learns the same from the other event.
+    pub(crate) fn is_about_the_same(&self, other: &Event) -> bool {
+        let other = Event {
+            id: self.id,
+            ..other.clone()
+        };
+        *self == other
+    }
+
     /// Checks whether a tenant receives the event.
     pub(crate) fn is_for(&self, tenant: Tenant) -> bool {
         match tenant {

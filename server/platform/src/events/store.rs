@@ -1,9 +1,9 @@
 //! Events in the database, kept for a day.
 
 use super::{Event, EventStored, Kind};
-use crate::db::{Connection, Db, Result, Tx, execute, rows};
+use crate::db::{Db, Result, Tx, execute, rows};
 use crate::error;
-use crate::ids::{EventId, FirmId, VesselId};
+use crate::ids::{EventId, FirmId, OperatorId, VesselId};
 use crate::tenants::{OwnerOf, Tenant};
 use crate::time::Time;
 use uuid::Uuid;
@@ -29,8 +29,7 @@ pub struct NewEvent {
     pub firm_id: Option<FirmId>,
 }
 
-/// Stores an event for the operator of a vessel, which is announced when the transaction
-/// commits.
+/// Stores an event for the operator of a vessel, to be published once it is committed.
 pub async fn insert(
     tx: &mut Tx,
     vessel_id: VesselId,
@@ -46,17 +45,27 @@ pub async fn insert(
     insert_event(tx, new, now).await
 }
 
-/// Stores an event, which is announced when the transaction commits.
+/// Stores an event, to be published once it is committed.
 pub async fn insert_event(tx: &mut Tx, new: NewEvent, now: Time) -> error::Result<Event> {
     let vessel_id = new.vessel_id;
     let owner = tx.ask(&OwnerOf(vessel_id)).await?;
     let owner = owner.ok_or_else(|| anyhow::anyhow!("vessel {vessel_id} is missing"))?;
+    insert_of(tx, owner.operator_id, new, now).await
+}
+
+/// Stores an event of a vessel whose operator is known, to be published once it is committed.
+pub async fn insert_of(
+    tx: &mut Tx,
+    operator_id: OperatorId,
+    new: NewEvent,
+    now: Time,
+) -> error::Result<Event> {
     let event = Event {
         id: EventId::new(),
-        operator_id: owner.operator_id,
+        operator_id,
         firm_id: new.firm_id,
         about: new.about,
-        vessel_id,
+        vessel_id: new.vessel_id,
         kind: new.kind,
     };
     execute!(
@@ -73,13 +82,6 @@ pub async fn insert_event(tx: &mut Tx, new: NewEvent, now: Time) -> error::Resul
     )?;
     let stored = EventStored { event, at: now };
     tx.publish(&stored).await?;
-    if let Connection::Postgres(tx) = tx.connection() {
-        sqlx::query("SELECT pg_notify($1, $2)")
-            .bind(CHANNEL)
-            .bind(serde_json::to_string(&stored.event)?)
-            .execute(&mut **tx)
-            .await?;
-    }
     Ok(stored.event)
 }
 

@@ -9,6 +9,7 @@
 //!   that severity. New details alone cause no letter.
 //! - Text of users cannot form a header: names are encoded, and line breaks are removed.
 
+mod admins;
 mod announce;
 mod letter;
 mod mailing_list;

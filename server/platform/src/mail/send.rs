@@ -1,6 +1,6 @@
 //! Letters as messages (RFC 5322), and their carrier.
 
-use super::letter::{Letter, Reason};
+use super::letter::{Letter, Reason, wrapped};
 use super::mailing_list::{Content, Files, MailingList, TopicList};
 use super::relay::Relay;
 use super::store;
@@ -8,10 +8,11 @@ use crate::app::App;
 use crate::config;
 use crate::db::{self, Db};
 use crate::outbox::{Attempt, Carrier, Channel, Claimed};
+use crate::time::Time;
 use anyhow::{Context, Result};
 use lettre::address::Envelope;
 use lettre::message::header::{ContentType, HeaderName, HeaderValue};
-use lettre::message::{Attachment, Mailbox, Message, MultiPart, SinglePart};
+use lettre::message::{Attachment, Mailbox, Message, MessageBuilder, MultiPart, SinglePart};
 use reqwest::Url;
 use std::fs;
 use std::time::{Duration, UNIX_EPOCH};
@@ -80,6 +81,47 @@ impl Mailer {
         }
     }
 
+    pub(super) fn relay(&self) -> &Relay {
+        &self.relay
+    }
+
+    /// Builds a letter about the server itself, with its envelope.
+    pub(super) fn service_message(
+        &self,
+        address: &str,
+        subject: &str,
+        text: &str,
+        now: Time,
+    ) -> Result<(Envelope, Vec<u8>)> {
+        let id = Uuid::now_v7();
+        let message = self.addressed(address, now, format!("<{id}@{}>", self.domain()))?;
+        let text = format!("{}\n\n{}\n", wrapped("", text), self.public_url);
+        let mut message = message
+            .subject(subject)
+            .header(ContentType::TEXT_PLAIN)
+            .body(text)?;
+        mark_as_generated(&mut message);
+        Ok((self.envelope(address)?, message.formatted()))
+    }
+
+    fn domain(&self) -> &str {
+        self.from.email.domain()
+    }
+
+    fn envelope(&self, address: &str) -> Result<Envelope> {
+        let from = Some(self.from.email.clone());
+        Ok(Envelope::new(from, vec![address.parse()?])?)
+    }
+
+    fn addressed(&self, address: &str, written: Time, id: String) -> Result<MessageBuilder> {
+        let written = u64::try_from(written.0.micros())?;
+        Ok(Message::builder()
+            .from(self.from.clone())
+            .to(Mailbox::new(None, address.parse()?))
+            .date(UNIX_EPOCH + Duration::from_micros(written))
+            .message_id(Some(id)))
+    }
+
     /// Finds the addressee of a receiver's letters; `None` if removed or disabled.
     async fn find_addressee(&self, db: &Db, receiver: Uuid) -> db::Result<Option<Addressee>> {
         if let Some((address, least)) = store::find_listed(db, receiver).await? {
@@ -105,19 +147,12 @@ impl Mailer {
         to: &Addressee,
         files: Option<Files>,
     ) -> Result<Message> {
-        let domain = self.from.email.domain();
-        let written = u64::try_from(claimed.created_at.0.micros())?;
-        let mut builder = Message::builder()
-            .from(self.from.clone())
-            .to(Mailbox::new(None, to.address.parse()?))
-            .subject(letter.subject.as_str())
-            .date(UNIX_EPOCH + Duration::from_micros(written))
-            // The id is the same at every attempt, so that a mailbox can detect a second copy.
-            .message_id(Some(format!(
-                "<{}.{}@{domain}>",
-                claimed.id,
-                claimed.receiver_id.simple()
-            )));
+        let domain = self.domain();
+        // The id is the same at every attempt, so that a mailbox can detect a second copy.
+        let id = format!("<{}.{}@{domain}>", claimed.id, claimed.receiver_id.simple());
+        let mut builder = self
+            .addressed(&to.address, claimed.created_at, id)?
+            .subject(letter.subject.as_str());
         if let Some(about) = letter.about {
             builder = builder.references(format!("<{about}@{domain}>"));
         }
@@ -126,13 +161,17 @@ impl Mailer {
             None => builder.header(ContentType::TEXT_PLAIN).body(text)?,
             Some(files) => builder.multipart(with_files(text, files)?)?,
         };
-        // Automatic replies, such as holiday notices, are suppressed (RFC 3834, section 5).
-        message.headers_mut().insert_raw(HeaderValue::new(
-            HeaderName::new_from_ascii_str("Auto-Submitted"),
-            "auto-generated".to_owned(),
-        ));
+        mark_as_generated(&mut message);
         Ok(message)
     }
+}
+
+/// Suppresses automatic replies, such as holiday notices (RFC 3834, section 5).
+fn mark_as_generated(message: &mut Message) {
+    message.headers_mut().insert_raw(HeaderValue::new(
+        HeaderName::new_from_ascii_str("Auto-Submitted"),
+        "auto-generated".to_owned(),
+    ));
 }
 
 /// Builds the body of a letter with files.
@@ -161,7 +200,7 @@ impl Carrier for Mailer {
             _ => None,
         };
         let message = self.message(claimed, &letter, &to, files)?;
-        let envelope = Envelope::new(Some(self.from.email.clone()), vec![to.address.parse()?])?;
+        let envelope = self.envelope(&to.address)?;
         self.relay.hand_over(&envelope, &message.formatted()).await
     }
 }

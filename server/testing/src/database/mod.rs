@@ -3,6 +3,10 @@
 //! Migrations run once, on a template that each test's database is a copy of. Running them
 //! for each of hundreds of tests would take minutes.
 
+mod proxy;
+
+pub use proxy::Proxy;
+
 use binnacle_platform::db::Db;
 use binnacle_server::subscriptions::subscribers;
 use sqlx::{AssertSqlSafe, Connection, Executor, PgConnection};
@@ -80,6 +84,15 @@ impl Database {
             url: format!("{server}/{name}"),
             kind: Kind::Server { admin_url, name },
         }
+    }
+
+    /// Changes the URL to that of a new proxy in front of the database.
+    pub(crate) async fn connect_through_proxy(&mut self) -> Proxy {
+        let (login, place) = self.url.rsplit_once('@').unwrap();
+        let (address, name) = place.split_once('/').unwrap();
+        let proxy = Proxy::start(address.parse().unwrap()).await;
+        self.url = format!("{login}@127.0.0.1:{}/{name}", proxy.port());
+        proxy
     }
 
     pub(crate) async fn remove(self) {
