@@ -24,6 +24,29 @@ pub struct Agent {
     pub compass_id: CompassId,
 }
 
+/// Token of an agent as a request shows it, not yet checked.
+pub(crate) struct ShownToken {
+    /// Vessel that the token names.
+    pub(crate) vessel: VesselId,
+    /// Hash under which a token is stored.
+    pub(crate) hash: Vec<u8>,
+}
+
+impl ShownToken {
+    /// Returns the token of a request.
+    ///
+    /// # Errors
+    /// Fails when the request has none of an agent.
+    pub(crate) fn of(parts: &Parts) -> Result<ShownToken> {
+        let token = bearer(parts).ok_or(Error::Unauthenticated)?;
+        let vessel = secret::vessel_of_token(token).ok_or(Error::Unauthenticated)?;
+        Ok(ShownToken {
+            vessel: VesselId(vessel),
+            hash: secret::hash(token),
+        })
+    }
+}
+
 impl<S> FromRequestParts<S> for Agent
 where
     App: FromRef<S>,
@@ -33,9 +56,8 @@ where
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Agent> {
         let app = App::from_ref(state);
-        let token = bearer(parts).ok_or(Error::Unauthenticated)?;
-        let vessel = secret::vessel_of_token(token).ok_or(Error::Unauthenticated)?;
-        let agent = find_agent(&app.db, VesselId(vessel), &secret::hash(token))
+        let token = ShownToken::of(parts)?;
+        let agent = find_agent(&app.db, token.vessel, &token.hash)
             .await?
             .ok_or(Error::Unauthenticated)?;
         RequestContext::of(parts)?.record_actor(&agent);

@@ -38,6 +38,24 @@ pub(super) struct AgentState {
     pub(super) wait: Option<u16>,
 }
 
+impl AgentState {
+    pub(super) fn uses(&self, model: Uuid) -> bool {
+        self.model == Some(model)
+    }
+
+    pub(super) fn uses_card(&self, tag: &str) -> bool {
+        self.card.as_deref() == Some(tag)
+    }
+
+    pub(super) fn has_card(&self) -> bool {
+        self.model.is_some() || self.card.is_some()
+    }
+
+    pub(super) fn settings_version(&self) -> u32 {
+        self.settings.unwrap_or(0)
+    }
+}
+
 /// Downlink in the form that the agent requested.
 pub(super) struct DownlinkResponse {
     downlink: Downlink,
@@ -56,6 +74,22 @@ impl IntoResponse for DownlinkResponse {
     }
 }
 
+/// Returns the acknowledgement for an agent that lacks nothing.
+pub(super) fn acknowledge(app: &App, contiguous_seq: i64, state: &AgentState) -> DownlinkResponse {
+    DownlinkResponse {
+        downlink: Downlink {
+            contiguous_seq: contiguous_seq as u64,
+            model: None,
+            unread: None,
+            card_withdrawn: None,
+            settings: None,
+            server_time: app.clock.now(),
+        },
+        form: state.form,
+    }
+}
+
+/// Returns the acknowledgement, with what the agent lacks.
 pub(super) async fn answer(
     app: &App,
     agent: Agent,
@@ -74,8 +108,7 @@ pub(super) async fn answer(
     )?
     .ok_or(Error::NotFound("stream"))?;
     let current = models::current(&app.db, agent.vessel_id, agent.compass_id).await?;
-    let has_card = state.model.is_some() || state.card.is_some();
-    let card_withdrawn = if has_card {
+    let card_withdrawn = if state.has_card() {
         models::card_withdrawn(&app.db, agent.vessel_id, agent.compass_id).await?
     } else {
         None
@@ -101,7 +134,7 @@ pub(super) async fn answer(
         }),
         unread: None,
         card_withdrawn,
-        settings: Some(settings).filter(|current| current.version != state.settings.unwrap_or(0)),
+        settings: Some(settings).filter(|current| current.version != state.settings_version()),
         server_time: app.clock.now(),
     };
     let form = state.form;

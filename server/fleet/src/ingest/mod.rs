@@ -9,8 +9,11 @@
 //!   as the same agent.
 //! - `contiguous_seq` covers only batches that are stored, all from 1 on.
 //! - An agent reaches its own streams and nothing else.
+//! - A batch in order takes six statements. Only updates for the agent, a gap, a repetition or another
+//!   batch of the stream at the same time takes more.
 
 mod downlink;
+mod sender;
 mod short_burst;
 mod store;
 
@@ -30,7 +33,7 @@ use binnacle_platform::app::App;
 use binnacle_platform::audit::{self, RequestContext};
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::events;
+use binnacle_platform::events::{self, NewEvent};
 use binnacle_platform::http::{Id, Json, Params};
 use binnacle_platform::time::Time;
 use binnacle_wire::batch::{Batch, StreamId};
@@ -38,7 +41,9 @@ use binnacle_wire::codec::MAX_BYTES;
 use binnacle_wire::messages::{Downlink, OpenStreamResponse};
 use downlink::{AgentState, DownlinkResponse};
 use metrics::counter;
+use sender::{Sender, StreamState};
 use std::time::Duration;
+use store::{BoardReport, Upload};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
@@ -94,25 +99,32 @@ async fn open_stream(
 async fn put_batch(
     State(app): State<App>,
     request: RequestContext,
-    agent: Agent,
+    sender: Sender,
     Id((stream, seq)): Id<(Uuid, u64)>,
     Params(state): Params<AgentState>,
     body: std::result::Result<Bytes, BytesRejection>,
 ) -> Result<DownlinkResponse> {
     let bytes = body.map_err(|rejection| too_large(&rejection))?;
     let batch = decode_batch(&bytes, StreamId(stream), seq)?;
-    let now = app.clock.now().into();
-    let mut tx = request.begin().await?;
     let delay_s = match state.wait {
         None => analysis_delay_s(&app, &batch),
         // It is the last batch for now.
         Some(_) => 0.0,
     };
-    let received = store_batch(&mut tx, agent, &batch, &bytes, now, delay_s).await?;
-    if let Some(waits) = state.waits.or(state.wait.map(|_| 0)) {
-        store::record_board_status(&mut tx, agent.vessel_id, stream, waits, state.budget, now)
-            .await?;
-    }
+    let waits = state.waits.or(state.wait.map(|_| 0));
+    let upload = Upload {
+        agent: sender.agent,
+        stream: sender.stream.clone(),
+        batch: &batch,
+        bytes: &bytes,
+        board: waits.map(|waits| BoardReport {
+            waits,
+            budget_percent: state.budget,
+        }),
+        now: app.clock.now().into(),
+    };
+    let mut tx = request.begin().await?;
+    let received = store_upload(&mut tx, upload, delay_s).await?;
     tx.commit().await?;
     for event in received.events_out {
         app.publish(event);
@@ -125,9 +137,11 @@ async fn put_batch(
     counter!("binnacle_batches_total", "result" => result).increment(1);
     if let Some(wait_s) = state.wait.filter(|_| !batch.samples.is_empty()) {
         let at_most = Duration::from_secs(wait_s.into()).min(LONGEST_WAIT);
-        analysis_queue::wait_until_done(&app, agent.vessel_id, at_most).await?;
+        analysis_queue::wait_until_done(&app, sender.agent.vessel_id, at_most).await?;
+    } else if sender.lacks_nothing(&state) {
+        return Ok(downlink::acknowledge(&app, received.contiguous_seq, &state));
     }
-    downlink::answer(&app, agent, stream, state).await
+    downlink::answer(&app, sender.agent, stream, state).await
 }
 
 /// Result of a received batch.
@@ -135,6 +149,8 @@ async fn put_batch(
 pub struct Received {
     /// True if it was not stored before.
     pub is_new: bool,
+    /// Number up to which every batch of the stream is stored.
+    pub contiguous_seq: i64,
     /// Events to be published once the transaction is committed.
     pub events_out: Vec<events::Event>,
 }
@@ -151,21 +167,50 @@ pub async fn store_batch(
     now: Time,
     delay_s: f64,
 ) -> Result<Received> {
-    let is_new = store::insert(tx, agent, batch, bytes, now).await?;
+    let upload = Upload {
+        agent,
+        stream: StreamState::find(tx, agent, batch.stream.0).await?,
+        batch,
+        bytes,
+        board: None,
+        now,
+    };
+    store_upload(tx, upload, delay_s).await
+}
+
+async fn store_upload(tx: &mut Tx, upload: Upload<'_>, delay_s: f64) -> Result<Received> {
+    let Upload {
+        agent, batch, now, ..
+    } = upload;
+    let has_later_stream = upload.stream.has_later;
+    let stored = store::insert(tx, upload).await?;
     let mut events_out = Vec::new();
-    if is_new {
+    if stored.is_new {
         let (vessel, compass) = (agent.vessel_id, agent.compass_id);
         events_out
             .extend(alerts::record_agent_alerts(tx, vessel, compass, &batch.alerts, now).await?);
-        events_out.extend(
-            alerts::check_duplicate_agent(tx, agent, batch.stream.0, batch.seq, now).await?,
-        );
+        if has_later_stream {
+            let (stream, seq) = (batch.stream.0, batch.seq);
+            let conflict = alerts::check_duplicate_agent(tx, agent, stream, seq, now);
+            events_out.extend(conflict.await?);
+        }
+        let operator = store::update_vessel(tx, vessel, batch, now).await?;
         if !batch.samples.is_empty() || !batch.alerts.is_empty() {
             analysis_queue::enqueue(tx, vessel, now, delay_s).await?;
         }
-        events_out.push(events::insert(tx, vessel, event_kinds::BATCH, now).await?);
+        let event = NewEvent {
+            vessel_id: vessel,
+            kind: event_kinds::BATCH,
+            about: None,
+            firm_id: None,
+        };
+        events_out.push(events::insert_of(tx, operator, event, now).await?);
     }
-    Ok(Received { is_new, events_out })
+    Ok(Received {
+        is_new: stored.is_new,
+        contiguous_seq: stored.contiguous_seq,
+        events_out,
+    })
 }
 
 /// Fetch the updates that the agent lacks

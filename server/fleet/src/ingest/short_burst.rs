@@ -6,10 +6,11 @@
 //!   Repeated messages, or the same batch over both links, change nothing.
 //! - An unreadable message does not hold back any other.
 
-use super::store_batch;
+use super::{Received, store_batch};
 use crate::agent_auth::Agent;
 use binnacle_platform::db::{Db, row};
 use binnacle_platform::error::{Error, Result};
+use binnacle_platform::events::Event;
 use binnacle_platform::ids::VesselId;
 use binnacle_platform::time::Time;
 use binnacle_wire::burst::{Ack, Joiner, StreamTag, write_ack};
@@ -28,6 +29,9 @@ pub struct ImportResult {
     pub incomplete: Vec<IncompleteBatch>,
     /// Messages, and the batches that they completed, that were not received.
     pub refused: Vec<RefusedMessage>,
+    /// Events to be announced.
+    #[serde(skip)]
+    pub events: Vec<Event>,
     /// Acknowledgements for the ship, by stream.
     #[serde(skip)]
     pub acknowledgements: Vec<Acknowledgement>,
@@ -98,10 +102,11 @@ pub async fn import_messages(
             }
         };
         match store(db, vessel, &frame, now).await {
-            Ok((stream, is_new)) => {
+            Ok((stream, received)) => {
                 streams.insert(stream);
-                imported.stored += usize::from(is_new);
-                imported.repeated += usize::from(!is_new);
+                imported.stored += usize::from(received.is_new);
+                imported.repeated += usize::from(!received.is_new);
+                imported.events.extend(received.events_out);
             }
             Err(error @ Error::Internal(_)) => return Err(error),
             Err(error) => imported.refused.push(refuse(error.to_string())),
@@ -119,7 +124,7 @@ pub async fn import_messages(
     Ok(imported)
 }
 
-async fn store(db: &Db, vessel: VesselId, frame: &[u8], now: Time) -> Result<(Uuid, bool)> {
+async fn store(db: &Db, vessel: VesselId, frame: &[u8], now: Time) -> Result<(Uuid, Received)> {
     let stated =
         binnacle_wire::decode(frame).map_err(|error| Error::BadRequest(error.to_string()))?;
     // The same bounds as for a batch that came by its path.
@@ -136,7 +141,7 @@ async fn store(db: &Db, vessel: VesselId, frame: &[u8], now: Time) -> Result<(Uu
     .ok_or(Error::NotFound("stream of this vessel"))?;
     let received = store_batch(&mut tx, agent, &batch, frame, now, 0.0).await?;
     tx.commit().await?;
-    Ok((batch.stream.0, received.is_new))
+    Ok((batch.stream.0, received))
 }
 
 async fn acknowledgement(db: &Db, vessel: VesselId, stream: Uuid) -> Result<Vec<u8>> {

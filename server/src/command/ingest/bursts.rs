@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use binnacle_fleet::ingest::{self, ShortBurst};
 use binnacle_platform::clock::Clock;
 use binnacle_platform::db::Db;
+use binnacle_platform::events;
 use binnacle_platform::ids::VesselId;
 use binnacle_wire::burst::MESSAGE_BYTES;
 use std::fs::{self, File};
@@ -35,6 +36,9 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
         db.migrate().await?;
         let now = Clock::System.now().into();
         let imported = ingest::import_messages(&db, vessel, &messages, now).await;
+        if let Ok(imported) = &imported {
+            events::announce_all(&db, &imported.events).await?;
+        }
         db.close().await;
         Ok(imported?)
     })?;

@@ -14,6 +14,7 @@ use binnacle_fleet::compasses;
 use binnacle_fleet::ingest::store_batch;
 use binnacle_platform::db::Db;
 use binnacle_platform::error::{Error, Result};
+use binnacle_platform::events;
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_wire::batch::{Batch, StreamId};
@@ -102,8 +103,9 @@ async fn store_part(
     let seq = next_seq(&mut tx, vessel, stream).await?;
     let batch = batch(stream, seq, samples);
     let bytes = encode(&batch)?;
-    store_batch(&mut tx, agent, &batch, &bytes, now, delay_s).await?;
+    let received = store_batch(&mut tx, agent, &batch, &bytes, now, delay_s).await?;
     tx.commit().await?;
+    events::announce_all(db, &received.events_out).await?;
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 mod imports;
 mod short_bursts;
+mod statements;
 
 use binnacle_platform::db::Pools;
 use binnacle_server_testing::on_both;
