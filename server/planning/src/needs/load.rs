@@ -23,6 +23,14 @@ use uuid::Uuid;
 /// Vessel and compass: the key of what is stored of a compass.
 type CompassKey = (VesselId, CompassId);
 
+/// Vessels of an operator in a range of ids.
+#[derive(Clone, Copy)]
+struct Which {
+    operator: OperatorId,
+    first: VesselId,
+    last: VesselId,
+}
+
 /// Stored records of a fleet, by vessel or by compass.
 struct FleetRecords {
     vessels: Vec<(VesselId, String, Option<String>)>,
@@ -60,8 +68,13 @@ impl FleetRecords {
         let (first, last) = vessel.map_or((VesselId(Uuid::nil()), VesselId(Uuid::max())), |one| {
             (one, one)
         });
+        let which = Which {
+            operator,
+            first,
+            last,
+        };
         let mut calls: BTreeMap<VesselId, Vec<UpcomingCall>> = BTreeMap::new();
-        for call in port_calls::upcoming_of_fleet(db, operator, now).await? {
+        for call in port_calls::upcoming_within(db, operator, first, last, now).await? {
             let (port, at) = (call.content()?.port, call.eta);
             let at = at.max(now);
             let of_vessel = calls.entry(call.vessel_id).or_default();
@@ -80,15 +93,15 @@ impl FleetRecords {
                 last
             )?,
             compasses: compasses::of_fleet(db, operator, first, last).await?,
-            particulars: load_particulars(db, operator).await?,
-            work: load_work(db, operator).await?,
-            completed: load_completed(db, operator).await?,
-            failed: load_failed(db, operator).await?,
+            particulars: load_particulars(db, which).await?,
+            work: load_work(db, which).await?,
+            completed: load_completed(db, which).await?,
+            failed: load_failed(db, which).await?,
             models: models::current_of_fleet(db, operator, first, last).await?,
-            findings: load_findings(db, operator).await?,
-            limits: load_limits(db, operator).await?,
+            findings: load_findings(db, which).await?,
+            limits: load_limits(db, which).await?,
             calls,
-            histories: over_limit_since::list_histories(db, operator).await?,
+            histories: over_limit_since::list_histories(db, operator, first, last).await?,
         })
     }
 
@@ -144,32 +157,34 @@ impl FleetRecords {
     }
 }
 
-async fn load_particulars(
-    db: &Db,
-    operator: OperatorId,
-) -> Result<BTreeMap<VesselId, Particulars>> {
+async fn load_particulars(db: &Db, which: Which) -> Result<BTreeMap<VesselId, Particulars>> {
     let found = rows!(
         db,
         (VesselId, String),
         "SELECT p.vessel_id, p.particulars FROM vessel_particulars p
          JOIN vessels v ON v.id = p.vessel_id
-         WHERE v.operator_id = $1
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
          ORDER BY p.vessel_id",
-        operator
+        which.operator,
+        which.first,
+        which.last
     )?;
     let read = |(vessel, text): (VesselId, String)| Ok((vessel, serde_json::from_str(&text)?));
     found.into_iter().map(read).collect()
 }
 
 /// Returns the work in the logbooks, without adjustments of cancelled orders.
-async fn load_work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Vec<Work>>> {
+async fn load_work(db: &Db, which: Which) -> Result<BTreeMap<VesselId, Vec<Work>>> {
     let cancelled: BTreeSet<String> = rows!(
         db,
         (OrderId,),
         "SELECT o.id FROM work_orders o JOIN vessels v ON v.id = o.vessel_id
-         WHERE v.operator_id = $1 AND o.completed_at IS NULL
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
+           AND o.completed_at IS NULL
          ORDER BY o.id",
-        operator
+        which.operator,
+        which.first,
+        which.last
     )?
     .into_iter()
     .map(|(order,)| format!("work order {order}"))
@@ -186,10 +201,13 @@ async fn load_work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, V
         ),
         "SELECT e.vessel_id, e.compass_id, e.kind, e.from_at, e.to_at, e.note
          FROM logbook_entries e JOIN vessels v ON v.id = e.vessel_id
-         WHERE v.operator_id = $1 AND e.withdrawn_at IS NULL
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
+           AND e.withdrawn_at IS NULL
            AND e.kind IN ('adjustment', 'compass_moved', 'dry_docking', 'repair', 'welding')
          ORDER BY e.vessel_id, e.from_at, e.id",
-        operator
+        which.operator,
+        which.first,
+        which.last
     )?;
     let mut work: BTreeMap<VesselId, Vec<Work>> = BTreeMap::new();
     for (vessel, compass_id, kind, from, to, note) in found {
@@ -208,15 +226,18 @@ async fn load_work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, V
 }
 
 /// Returns the last completed adjustment of each compass.
-async fn load_completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, Completed>> {
+async fn load_completed(db: &Db, which: Which) -> Result<BTreeMap<CompassKey, Completed>> {
     let found = rows!(
         db,
         (VesselId, CompassId, Time, State),
         "SELECT o.vessel_id, o.compass_id, o.completed_at, o.state
          FROM work_orders o JOIN vessels v ON v.id = o.vessel_id
-         WHERE v.operator_id = $1 AND o.completed_at IS NOT NULL
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
+           AND o.completed_at IS NOT NULL
          ORDER BY o.vessel_id, o.completed_at, o.id",
-        operator
+        which.operator,
+        which.first,
+        which.last
     )?;
     let keyed = |(vessel, compass, at, state)| {
         // An order closed without verification stays a prediction.
@@ -233,7 +254,7 @@ async fn load_completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Compas
 
 /// Returns the last failed verification of each compass without a later completed order: time of
 /// the last heading at sea, and the largest error in degrees.
-async fn load_failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, (Time, f64)>> {
+async fn load_failed(db: &Db, which: Which) -> Result<BTreeMap<CompassKey, (Time, f64)>> {
     let found = rows!(
         db,
         (VesselId, CompassId, Time, String),
@@ -241,14 +262,17 @@ async fn load_failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKe
          FROM work_orders o
          JOIN vessels v ON v.id = o.vessel_id
          JOIN work_order_entries e ON e.vessel_id = o.vessel_id AND e.order_id = o.id
-         WHERE v.operator_id = $1 AND o.completed_at IS NOT NULL
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
+           AND o.completed_at IS NOT NULL
            AND (o.state = 'failed' OR (o.state = 'closed' AND o.verified_at IS NULL))
            AND NOT EXISTS (
                SELECT 1 FROM work_orders later
                WHERE later.vessel_id = o.vessel_id AND later.compass_id = o.compass_id
                  AND later.completed_at > o.completed_at)
          ORDER BY o.vessel_id, o.completed_at, e.seq",
-        operator
+        which.operator,
+        which.first,
+        which.last
     )?;
     let mut failed = BTreeMap::new();
     for (vessel, compass, _, line) in found {
@@ -263,15 +287,17 @@ async fn load_failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKe
     Ok(failed)
 }
 
-async fn load_findings(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, Findings>> {
+async fn load_findings(db: &Db, which: Which) -> Result<BTreeMap<CompassKey, Findings>> {
     let found = rows!(
         db,
         (VesselId, CompassId, Option<String>),
         "SELECT a.vessel_id, a.compass_id, a.findings
          FROM analyses a JOIN vessels v ON v.id = a.vessel_id
-         WHERE v.operator_id = $1
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
          ORDER BY a.vessel_id, a.compass_id",
-        operator
+        which.operator,
+        which.first,
+        which.last
     )?;
     let mut findings = BTreeMap::new();
     for (vessel, compass, text) in found {
@@ -282,14 +308,16 @@ async fn load_findings(db: &Db, operator: OperatorId) -> Result<BTreeMap<Compass
     Ok(findings)
 }
 
-async fn load_limits(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, AlertLimits>> {
+async fn load_limits(db: &Db, which: Which) -> Result<BTreeMap<VesselId, AlertLimits>> {
     let found = rows!(
         db,
         (VesselId, String),
         "SELECT s.vessel_id, s.alerts FROM vessel_settings s JOIN vessels v ON v.id = s.vessel_id
-         WHERE v.operator_id = $1
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
          ORDER BY s.vessel_id",
-        operator
+        which.operator,
+        which.first,
+        which.last
     )?;
     let read = |(vessel, text): (VesselId, String)| Ok((vessel, serde_json::from_str(&text)?));
     found.into_iter().map(read).collect()

@@ -35,19 +35,23 @@ impl DeviationHistory {
     }
 }
 
-/// Returns the stored history of each of an operator's compasses.
+/// Returns the stored history of each compass of an operator's vessels in a range of ids.
 pub(super) async fn list_histories(
     db: &Db,
     operator: OperatorId,
+    first: VesselId,
+    last: VesselId,
 ) -> Result<BTreeMap<(VesselId, CompassId), DeviationHistory>> {
     let found = rows!(
         db,
         (VesselId, CompassId, String, f64),
         "SELECT s.vessel_id, s.compass_id, s.since, s.at_least_deg FROM deviation_since s
          JOIN vessels v ON v.id = s.vessel_id
-         WHERE v.operator_id = $1
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
          ORDER BY s.vessel_id, s.compass_id, s.since",
-        operator
+        operator,
+        first,
+        last
     )?;
     let mut histories: BTreeMap<_, DeviationHistory> = BTreeMap::new();
     for (vessel, compass, since, level_deg) in found {

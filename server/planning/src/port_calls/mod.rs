@@ -21,7 +21,7 @@ mod uploaded_file;
 
 pub use call::{CallBerthHeading, CallBerthHeadingSource, Content, PortCall, Source};
 pub use heading::{EarlierHeadings, heading_alongside};
-pub use store::{StoredCall, upcoming_of_fleet};
+pub use store::{StoredCall, upcoming_of_fleet, upcoming_within};
 pub use subscriber::note_berth_heading;
 
 use axum::extract::{FromRef, State};

@@ -143,15 +143,30 @@ pub async fn upcoming_of_fleet(
     operator: OperatorId,
     now: Time,
 ) -> Result<Vec<StoredCall>> {
+    let (first, last) = (VesselId(Uuid::nil()), VesselId(Uuid::max()));
+    upcoming_within(db, operator, first, last, now).await
+}
+
+/// Returns the current and future calls of the operator's vessels in service within a
+/// range of ids, in order of vessel and time.
+pub async fn upcoming_within(
+    db: &Db,
+    operator: OperatorId,
+    first: VesselId,
+    last: VesselId,
+    now: Time,
+) -> Result<Vec<StoredCall>> {
     Ok(rows!(
         db,
         StoredCall,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
-         WHERE v.operator_id = $1 AND v.out_of_service_at IS NULL
-           AND c.etd > $2 AND c.withdrawn_at IS NULL
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
+           AND v.out_of_service_at IS NULL AND c.etd > $4 AND c.withdrawn_at IS NULL
          ORDER BY c.vessel_id, c.eta",
         operator,
+        first,
+        last,
         now
     )?)
 }
