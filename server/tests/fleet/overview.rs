@@ -9,6 +9,7 @@ on_both!(
     the_overview_agrees_with_the_vessels_page,
     the_overview_predicts_for_the_next_port_call,
     the_overview_of_one_vessel_is_its_operators_alone,
+    the_overview_comes_in_pages,
     gnss_interference_is_an_alert_with_its_place_until_it_passes,
 );
 
@@ -103,6 +104,29 @@ async fn the_overview_of_one_vessel_is_its_operators_alone(server: TestServer) {
     assert_eq!(eve.get(&path).await.good()["vessels"], json!([]));
     assert_eq!(eve.get("/fleet").await.good()["vessels"], json!([]));
     assert_eq!(eve.get("/fleet?vessel=x").await.problem(), "bad-request");
+    server.finish().await;
+}
+
+async fn the_overview_comes_in_pages(server: TestServer) {
+    let ada = server.admin("ada").await;
+    for name in ["Nao", "Kogge", "Gaviota"] {
+        ada.create_vessel(name).await;
+    }
+    let first = ada.get("/fleet?limit=2").await.good();
+    let names = |page: &Value| {
+        let vessels = page["vessels"].as_array().unwrap().iter();
+        vessels
+            .map(|vessel| vessel["name"].as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(names(&first), ["Nao", "Kogge"]);
+    let next = first["next"].as_str().unwrap();
+    let second = ada
+        .get(&format!("/fleet?limit=2&after={next}"))
+        .await
+        .good();
+    assert_eq!(names(&second), ["Gaviota"]);
+    assert_eq!(second["next"], Value::Null);
     server.finish().await;
 }
 

@@ -92,8 +92,22 @@ const meMs = 15_000;
 
 export const findMe = () => answer(client.GET('/api/v1/me', { signal: AbortSignal.timeout(meMs) }));
 
-/** The whole fleet at a glance. */
-export const findFleet = async () => (await answer(client.GET('/api/v1/fleet'))).vessels;
+/** Vessels of a page with tracks; a map of more of them would be unreadable. */
+const withTracks = 200;
+
+/** The whole fleet at a glance, with tracks where it is not too large for them. */
+export const findFleet = async () => {
+  const at = (limit: number, after?: string) =>
+    answer(client.GET('/api/v1/fleet', { params: { query: page(limit, after) } }));
+  let found = await at(withTracks);
+  const vessels = [...found.vessels];
+  while (found.next) {
+    found = await at(longestPage, found.next);
+    vessels.push(...found.vessels);
+  }
+  if (vessels.length <= withTracks) return vessels;
+  return vessels.map((vessel) => ({ ...vessel, track: [] }));
+};
 
 /** One vessel of it; none when she is gone. */
 export const findAtAGlance = async (vessel: string) => {

@@ -1,7 +1,7 @@
-//! Overview of a fleet: every vessel in one response, for a map and a table side by side.
+//! Overview of a fleet: vessels page by page, for a map and a table side by side.
 //!
-//! Invariants: it is one operator's whole fleet, or the one vessel requested, in the order of
-//! entry. It repeats facts of the vessels' own pages in short, because a slow link carries them.
+//! Invariants: it is one operator's fleet, or the one vessel requested, in the order of
+//! entry. A page reads no other page's records. It repeats facts of the vessels' own pages in short, because a slow link carries them.
 
 mod store;
 
@@ -16,7 +16,7 @@ use binnacle_compass::field::{FieldModel, field};
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Problem, Result};
-use binnacle_platform::http::{Json, Params};
+use binnacle_platform::http::{Json, Page, Params};
 use binnacle_platform::ids::{AlertId, VesselId};
 use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
@@ -28,7 +28,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// Number of vessels above which a response has no tracks.
+/// Limit of a page above which it has no tracks.
 const MOST_WITH_TRACKS: usize = 200;
 
 /// Returns the routes.
@@ -53,6 +53,9 @@ struct Which {
 pub struct Fleet {
     /// In the order in which they were entered.
     pub vessels: Vec<FleetVessel>,
+    /// `after` of the next page.
+    #[schema(required)]
+    pub next: Option<String>,
 }
 
 /// State of a vessel, for a line of a table and a mark on a map.
@@ -75,8 +78,7 @@ pub struct FleetVessel {
     #[schema(required)]
     pub position: Option<LastPosition>,
     /// Its places in the month before, degrees north and east, one for each twelve hours, the
-    /// oldest first. Empty in a response of more than 200 vessels, where a map of them would be
-    /// unreadable.
+    /// oldest first. Empty with a `limit` above 200, as a map of so many would be unreadable.
     #[schema(value_type = Vec<[f64; 2]>)]
     pub track: Track,
     /// GNSS interference that it met in the last fortnight, the earliest first.
@@ -144,37 +146,41 @@ pub struct FleetAlert {
 }
 
 /// The fleet at a glance
-#[utoipa::path(get, path = "/fleet", tag = "fleet", params(Which),
+#[utoipa::path(get, path = "/fleet", tag = "fleet", params(Which, Page),
     responses((status = 200, body = Fleet), (status = 401, body = Problem)))]
 async fn find_fleet(
     extract::State(app): extract::State<App>,
     reader: Reader,
     Params(which): Params<Which>,
+    page: Page,
 ) -> Result<Json<Fleet>> {
-    let now = app.clock.now().into();
-    let found = store::find(&app.db, reader.operator, which.vessel, now).await?;
+    let which = store::Which {
+        operator: reader.operator,
+        only: which.vessel,
+        after: page.after_id()?.map(VesselId),
+        fetch: page.fetch(),
+        with_tracks: page.limit() <= MOST_WITH_TRACKS,
+    };
+    let found = store::find(&app.db, &which, app.clock.now().into()).await?;
     // A thousand models on every heading take too long for an async thread.
-    let fleet = tokio::task::spawn_blocking(move || assemble(found));
+    let fleet = tokio::task::spawn_blocking(move || assemble(found, &page));
     Ok(Json(fleet.await.map_err(anyhow::Error::from)?))
 }
 
-fn assemble(found: store::FleetRecords) -> Fleet {
+fn assemble(found: store::FleetRecords, page: &Page) -> Fleet {
+    let listed = page.cut(found.vessels, |row| row.id.to_string());
     let mut alerts: HashMap<VesselId, Vec<WorstAlert>> = HashMap::new();
     for alert in found.alerts {
         alerts.entry(alert.vessel_id).or_default().push(alert);
     }
     let mut models = by_vessel(found.models, |model| model.vessel_id);
-    let tracks = match found.vessels.len() {
-        ..=MOST_WITH_TRACKS => found.tracks,
-        _ => Vec::new(),
-    };
-    let mut tracks = by_vessel(tracks, |track| track.vessel_id);
+    let mut tracks = by_vessel(found.tracks, |track| track.vessel_id);
     let mut calls = by_vessel(found.calls, |call| call.vessel_id);
     let mut interference: HashMap<VesselId, Vec<Interference>> = HashMap::new();
     for met in found.interference {
         interference.entry(met.vessel_id).or_default().push(met);
     }
-    let vessels = found.vessels.into_iter().map(|row| {
+    let vessels = listed.items.into_iter().map(|row| {
         let model = models.remove(&row.id);
         let track = tracks.remove(&row.id).map(|stored| stored.track);
         let alerts = alerts.remove(&row.id).unwrap_or_default();
@@ -188,6 +194,7 @@ fn assemble(found: store::FleetRecords) -> Fleet {
     });
     Fleet {
         vessels: vessels.collect(),
+        next: listed.next,
     }
 }
 

@@ -1,4 +1,4 @@
-//! Records of a whole fleet in the database, in six queries.
+//! Records of a page of a fleet in the database, in six queries.
 
 use crate::alerts::{Cause, State};
 use crate::analysis::{Interference, Track, recent_interference};
@@ -11,6 +11,7 @@ use binnacle_platform::time::Time;
 use uuid::Uuid;
 
 /// Records for the overview.
+#[derive(Default)]
 pub(super) struct FleetRecords {
     pub(super) vessels: Vec<VesselRow>,
     /// Current models, a vessel's first compass first.
@@ -87,42 +88,58 @@ impl WorstAlert {
     }
 }
 
-/// Reads the records of an operator's vessels, or of one of them.
-pub(super) async fn find(
-    db: &Db,
-    operator: OperatorId,
-    only: Option<VesselId>,
-    now: Time,
-) -> Result<FleetRecords> {
-    let first = only.unwrap_or(VesselId(Uuid::nil()));
-    let last = only.unwrap_or(VesselId(Uuid::max()));
+/// Vessels to read.
+pub(super) struct Which {
+    pub(super) operator: OperatorId,
+    /// Only this vessel.
+    pub(super) only: Option<VesselId>,
+    /// Only vessels after this one.
+    pub(super) after: Option<VesselId>,
+    /// Maximum number of vessels.
+    pub(super) fetch: i64,
+    pub(super) with_tracks: bool,
+}
+
+/// Reads the records of a page of an operator's vessels, or of one of them.
+pub(super) async fn find(db: &Db, which: &Which, now: Time) -> Result<FleetRecords> {
+    let operator = which.operator;
+    let vessels = vessels(db, which).await?;
+    let (Some(first), Some(last)) = (vessels.first(), vessels.last()) else {
+        return Ok(FleetRecords::default());
+    };
+    let (first, last) = (first.id, last.id);
+    let tracks = if which.with_tracks {
+        tracks(db, operator, first, last).await?
+    } else {
+        Vec::new()
+    };
     Ok(FleetRecords {
-        vessels: vessels(db, operator, first, last).await?,
+        vessels,
         models: models::current_of_fleet(db, operator, first, last).await?,
-        tracks: tracks(db, operator, first, last).await?,
+        tracks,
         alerts: open_alerts(db, operator, first, last).await?,
         calls: next_calls(db, operator, first, last, now).await?,
         interference: recent_interference(db, operator, first, last, now).await?,
     })
 }
 
-async fn vessels(
-    db: &Db,
-    operator: OperatorId,
-    first: VesselId,
-    last: VesselId,
-) -> Result<Vec<VesselRow>> {
+async fn vessels(db: &Db, which: &Which) -> Result<Vec<VesselRow>> {
+    let first = which.only.unwrap_or(VesselId(Uuid::nil()));
+    let last = which.only.unwrap_or(VesselId(Uuid::max()));
     rows!(
         db,
         VesselRow,
         "SELECT id, name, imo_number, call_sign, last_upload_at, last_sample_at, last_lat, last_lon
          FROM vessels
-         WHERE operator_id = $1 AND id BETWEEN $2 AND $3
+         WHERE operator_id = $1 AND id BETWEEN $2 AND $3 AND id > $4
            AND (out_of_service_at IS NULL OR $2 = $3)
-         ORDER BY id",
-        operator,
+         ORDER BY id
+         LIMIT $5",
+        which.operator,
         first,
-        last
+        last,
+        which.after.unwrap_or(VesselId(Uuid::nil())),
+        which.fetch
     )
 }
 
