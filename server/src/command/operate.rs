@@ -70,7 +70,7 @@ pub async fn run(app: App, listener: TcpListener, tls: Option<TlsAcceptor>) -> R
     parts.spawn(events.listen(app.clone()));
     parts.spawn(announce_events(app.clone()));
     parts.spawn(health::disk::watch(app.clone(), mailer.clone()));
-    if app.config.role.works() && app.config.analysis_workers > 0 {
+    if app.config.role.works() {
         let outdated = analysis_queue::enqueue_outdated(&app.db, app.clock.now().into()).await?;
         if outdated > 0 {
             info!(
@@ -78,6 +78,8 @@ pub async fn run(app: App, listener: TcpListener, tls: Option<TlsAcceptor>) -> R
                 "the estimator has changed; analysing again"
             );
         }
+    }
+    if app.config.role.works() && app.config.analysis_workers > 0 {
         for _ in 0..app.config.analysis_workers {
             parts.spawn(worker::run(app.clone()));
         }

@@ -7,6 +7,7 @@ mod commands;
 mod dashboard;
 mod documentation_examples;
 mod fit;
+mod metrics;
 mod migration;
 mod openapi;
 mod outages;

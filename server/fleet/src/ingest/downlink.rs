@@ -4,7 +4,7 @@ use crate::agent_auth::Agent;
 use crate::models::{self, StoredModel};
 use crate::settings;
 use axum::Json;
-use axum::body::Body;
+use axum::body::{Body, HttpBody};
 use axum::response::{IntoResponse, Response};
 use binnacle_compass::model::Model;
 use binnacle_platform::app::App;
@@ -12,6 +12,7 @@ use binnacle_platform::db::row;
 use binnacle_platform::error::{Error, Result};
 use binnacle_wire::downlink::{self, FORM, card_tag};
 use binnacle_wire::messages::{Downlink, ModelDownlink};
+use metrics::counter;
 use serde::Deserialize;
 use utoipa::IntoParams;
 use uuid::Uuid;
@@ -66,11 +67,14 @@ impl IntoResponse for DownlinkResponse {
     fn into_response(self) -> Response {
         let reads_compact = self.form.is_some_and(|form| form >= FORM);
         let compact = reads_compact.then(|| downlink::encode(&self.downlink));
-        match compact.flatten() {
+        let response = match compact.flatten() {
             // A body without a content type is bytes (RFC 9110, 8.3), which saves forty of them.
             Some(bytes) => Body::from(bytes).into_response(),
             None => Json(self.downlink).into_response(),
-        }
+        };
+        let bytes = response.body().size_hint().exact().unwrap_or_default();
+        counter!("binnacle_bytes_total", "stage" => "sent").increment(bytes);
+        response
     }
 }
 

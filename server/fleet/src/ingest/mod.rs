@@ -135,6 +135,14 @@ async fn put_batch(
         "repeated"
     };
     counter!("binnacle_batches_total", "result" => result).increment(1);
+    let stages: &[&str] = if received.is_new {
+        &["received", "stored"]
+    } else {
+        &["received"]
+    };
+    for &stage in stages {
+        counter!("binnacle_bytes_total", "stage" => stage).increment(bytes.len() as u64);
+    }
     if let Some(wait_s) = state.wait.filter(|_| !batch.samples.is_empty()) {
         let at_most = Duration::from_secs(wait_s.into()).min(LONGEST_WAIT);
         analysis_queue::wait_until_done(&app, sender.agent.vessel_id, at_most).await?;

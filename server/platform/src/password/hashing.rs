@@ -37,7 +37,7 @@ impl Hashing {
         Ok(Permit {
             memory,
             hashing: self.clone(),
-            _permit: permit,
+            _turn: permit,
         })
     }
 
@@ -51,7 +51,7 @@ impl Hashing {
 pub struct Permit {
     memory: HashMemory,
     hashing: Arc<Hashing>,
-    _permit: OwnedSemaphorePermit,
+    _turn: OwnedSemaphorePermit,
 }
 
 impl Permit {

@@ -359,8 +359,8 @@ async fn course_roll_temperature_and_source_are_exported(server: TestServer) {
     let course = rows[10][19].parse::<f64>().unwrap();
     let drift = wrap_180(course - rows[10][4].parse::<f64>().unwrap());
     assert!((drift - 3.0).abs() < 0.6, "{drift}");
-    let told = ["-1.4", "2.5", "-7.0", "41947", "", "false"];
-    assert_eq!(rows[10][20..], told);
+    let expected = ["-1.4", "2.5", "-7.0", "41947", "", "false"];
+    assert_eq!(rows[10][20..], expected);
     let listed = ada.get(&nao.path("/samples")).await.good();
     assert_eq!(listed["items"][9]["roll_deg"], -1.4);
     assert_eq!(listed["items"][9]["gyro_source"], 41_947);
