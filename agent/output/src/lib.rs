@@ -12,8 +12,8 @@ pub mod config;
 
 mod framing;
 mod line;
-mod schedule;
 
+mod heading;
 mod heading_sentences;
 
 mod alert_sentences;
@@ -34,10 +34,10 @@ mod signalk;
 pub use alert_sentences::{AlertConditions, AlertSentences};
 pub use condition::AlertCondition;
 pub use framing::frame_sentence;
-pub use heading_sentences::{Heading, HeadingSentences, Quality};
+pub use heading::{Heading, Trigger};
+pub use heading_sentences::{HeadingSentences, Quality};
 pub use line::Line;
 pub use n2k::OwnDevice;
 pub use open_error::OpenError;
 pub use outputs::Outputs;
-pub use schedule::Trigger;
 pub use shared_outputs::SharedOutputs;

@@ -1,9 +1,8 @@
 //! Outputs over the connections of inputs: to NMEA 2000 buses and Signal K servers.
 
 use crate::config::OutputConfig;
-use crate::heading_sentences::Heading;
+use crate::heading::{Heading, Trigger};
 use crate::n2k::{N2kOutput, OwnDevice};
-use crate::schedule::Trigger;
 use crate::signalk::SignalKOutput;
 use binnacle_input::SharedEnds;
 use binnacle_input::config::AddressOwner;

@@ -7,8 +7,7 @@
 //! Invariant: while the heading is withheld, its values are null.
 
 use crate::config::SignalKOutputConfig;
-use crate::heading_sentences::Heading;
-use crate::schedule::{Schedule, Trigger};
+use crate::heading::{Heading, Schedule, Trigger};
 use binnacle_compass::angle::{Deviation, MagneticHeading, TrueHeading, Variation};
 use binnacle_input::{Port, PortEnd, PortEvent};
 use serde_json::json;
@@ -23,7 +22,6 @@ const STEPS_PER_RAD: f64 = 1e4;
 pub(crate) struct SignalKOutput {
     label: String,
     schedule: Schedule,
-    was_withheld: bool,
     port: Port<String>,
     is_open: bool,
 }
@@ -38,7 +36,6 @@ impl SignalKOutput {
         let output = SignalKOutput {
             label: config.label.as_str().to_owned(),
             schedule: Schedule::new(interval_s),
-            was_withheld: false,
             port,
             is_open: false,
         };
@@ -55,7 +52,7 @@ impl SignalKOutput {
         self.schedule.timer(compass_interval).unwrap_or(now)
     }
 
-    /// Sends the heading if it is due. One that has just been withheld is null at once.
+    /// Sends the heading if it is due.
     pub(crate) fn send(
         &mut self,
         heading: &Heading,
@@ -67,13 +64,12 @@ impl SignalKOutput {
             self.is_open = event == PortEvent::Opened;
             self.schedule.reset();
         }
-        let is_withheld = heading.true_heading.is_none();
-        let at_once = is_withheld && !self.was_withheld;
-        self.was_withheld = is_withheld;
-        if !at_once && !self.schedule.is_due(trigger, compass_interval, now) {
+        let is_due = self
+            .schedule
+            .take_due(heading, trigger, compass_interval, now);
+        if !is_due {
             return;
         }
-        self.schedule.note_sent(now);
         if self.is_open && !self.port.send(delta(&self.label, heading)) {
             tracing::debug!(label = self.label, "the server takes no deltas");
         }
@@ -109,21 +105,7 @@ fn delta(label: &str, heading: &Heading) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_compass::angle::CompassHeading;
     use serde_json::Value;
-
-    fn heading(compass: f64, deviation: f64, variation: f64) -> Heading {
-        let compass = CompassHeading::new(compass).unwrap();
-        let deviation = Deviation::new(deviation).unwrap();
-        let variation = Variation::new(variation).unwrap();
-        Heading {
-            compass: Some(compass),
-            deviation: Some(deviation),
-            variation: Some(variation),
-            true_heading: Some(compass + deviation + variation),
-            standard_error_deg: None,
-        }
-    }
 
     fn values(heading: &Heading) -> [Option<f64>; 4] {
         let delta: Value = serde_json::from_str(&delta("binnacle", heading)).unwrap();
@@ -152,7 +134,7 @@ mod tests {
             ((1.0, -2.0, 3.0), [359.0, 2.0, -2.0, 3.0]),
         ] {
             let (compass, deviation, variation) = given;
-            let read = values(&heading(compass, deviation, variation));
+            let read = values(&Heading::from_degrees(compass, deviation, variation));
             for (read, expected) in read.into_iter().zip(expected) {
                 let read = read.unwrap();
                 assert!(
@@ -167,7 +149,7 @@ mod tests {
     fn a_heading_that_is_withheld_is_null_and_the_variation_is_known_still() {
         let withheld = Heading {
             true_heading: None,
-            ..heading(90.0, 2.0, 3.0)
+            ..Heading::from_degrees(90.0, 2.0, 3.0)
         };
         let [magnetic, of_true, deviation, variation] = values(&withheld);
         assert_eq!((magnetic, of_true, deviation), (None, None, None));

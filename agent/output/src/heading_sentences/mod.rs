@@ -12,9 +12,9 @@
 
 use crate::config::{OutputConfig, SentenceConfig, SentenceKind};
 use crate::framing::frame_sentence;
+use crate::heading::{Heading, Schedule, Trigger};
 use crate::line::Line;
-use crate::schedule::{Schedule, Trigger};
-use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation};
 use binnacle_nmea::sentence::{Hdg, Hdt, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, write};
 use std::time::Duration;
@@ -22,29 +22,6 @@ use tokio::time::Instant;
 
 /// Longest time until receivers hear that a heading is withheld.
 const LONGEST_PAUSE: Duration = Duration::from_millis(500);
-
-/// Corrected heading, as far as it is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Heading {
-    /// Raw reading.
-    pub compass: Option<CompassHeading>,
-    /// Deviation of the model on this heading.
-    pub deviation: Option<Deviation>,
-    /// Variation of the field.
-    pub variation: Option<Variation>,
-    /// Compass heading with both applied; `None` while it is withheld.
-    pub true_heading: Option<TrueHeading>,
-    /// Standard error of the deviation.
-    pub standard_error_deg: Option<f64>,
-}
-
-impl Heading {
-    /// Returns the compass heading with the deviation applied; none while it is withheld.
-    pub fn magnetic(&self) -> Option<MagneticHeading> {
-        self.true_heading?;
-        Some(self.compass? + self.deviation?)
-    }
-}
 
 /// Quality of the model behind a heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +36,6 @@ pub struct Quality {
 #[derive(Debug)]
 pub struct HeadingSentences {
     sentences: Vec<ScheduledSentence>,
-    was_withheld: bool,
 }
 
 /// Talker and interval of a sentence.
@@ -88,7 +64,6 @@ impl HeadingSentences {
         });
         HeadingSentences {
             sentences: sentences.collect(),
-            was_withheld: false,
         }
     }
 
@@ -99,8 +74,7 @@ impl HeadingSentences {
         times.fold(now + LONGEST_PAUSE, Instant::min)
     }
 
-    /// Returns the sentences that are due. A heading that has just been withheld is not valid at
-    /// once, whatever the intervals.
+    /// Returns the sentences that are due.
     pub fn due(
         &mut self,
         heading: &Heading,
@@ -109,16 +83,14 @@ impl HeadingSentences {
         compass_interval: Duration,
         now: Instant,
     ) -> Vec<Line> {
-        let is_withheld = heading.true_heading.is_none();
-        let at_once = is_withheld && !self.was_withheld;
-        self.was_withheld = is_withheld;
         let mut lines = Vec::new();
         for sentence in &mut self.sentences {
-            let schedule = &mut sentence.schedule;
-            if !at_once && !schedule.is_due(trigger, compass_interval, now) {
+            let is_due = sentence
+                .schedule
+                .take_due(heading, trigger, compass_interval, now);
+            if !is_due {
                 continue;
             }
-            schedule.note_sent(now);
             let text = sentence.text(heading, quality);
             let kind = sentence.kind;
             lines.extend(text.map(|text| Line::single(kind, text)));

@@ -20,26 +20,13 @@ fn text(corrected: &Heading, quality: Option<Quality>) -> String {
     text_of(&sentences.due(corrected, quality, Trigger::Timer, NO_INTERVAL, now))
 }
 
-fn corrected(compass: f64, deviation: f64, variation: f64) -> Heading {
-    let compass = CompassHeading::new(compass).unwrap();
-    let deviation = Deviation::new(deviation).unwrap();
-    let variation = Variation::new(variation).unwrap();
-    Heading {
-        compass: Some(compass),
-        deviation: Some(deviation),
-        variation: Some(variation),
-        true_heading: Some(compass + deviation + variation),
-        standard_error_deg: Some(0.25),
-    }
-}
-
 #[test]
 fn east_and_west_stand_in_their_places() {
     let quality = Some(Quality {
         version: 3,
         age_days: 1.04,
     });
-    let said = text(&corrected(1.0, -2.5, 4.0), quality);
+    let said = text(&Heading::from_degrees(1.0, -2.5, 4.0), quality);
     let lines: Vec<&str> = said.lines().map(|l| l.split('*').next().unwrap()).collect();
     let [hdg, ths, pbinq] = lines.as_slice() else {
         panic!("{said}")
@@ -66,7 +53,7 @@ fn what_is_not_known_is_empty_and_not_valid() {
 
 #[test]
 fn what_is_written_reads_back() {
-    let said = text(&corrected(359.96, 0.1, -20.0), None);
+    let said = text(&Heading::from_degrees(359.96, 0.1, -20.0), None);
     let hdg = binnacle_nmea::parse(said.lines().next().unwrap().as_bytes()).unwrap();
     let Data::Hdg(hdg) = hdg.data else {
         panic!("{said}")
@@ -80,7 +67,7 @@ fn no_sentence_is_longer_than_its_line_is_reckoned_with() {
     let longest = Heading {
         standard_error_deg: Some(179.99),
         true_heading: TrueHeading::new(359.9),
-        ..corrected(359.9, -179.9, -179.9)
+        ..Heading::from_degrees(359.9, -179.9, -179.9)
     };
     let quality = Some(Quality {
         version: 9_999_999,
@@ -103,7 +90,7 @@ fn no_sentence_is_longer_than_its_line_is_reckoned_with() {
 fn while_a_heading_is_withheld_nothing_can_be_read_as_one() {
     let withheld = Heading {
         true_heading: None,
-        ..corrected(90.0, 2.0, 4.0)
+        ..Heading::from_degrees(90.0, 2.0, 4.0)
     };
     let mut sentences = sentences("hdt = true");
     let now = Instant::now();
@@ -122,7 +109,7 @@ ths = { interval_s = 10 }
 hdt = { talker = "HE", interval_s = 0.2 }
 "#;
     let mut sentences = sentences(config);
-    let valid = corrected(90.0, 2.0, 4.0);
+    let valid = Heading::from_degrees(90.0, 2.0, 4.0);
     let start = Instant::now();
     let mut count = |ms, heading: &Heading| {
         let now = start + Duration::from_millis(ms);
@@ -149,7 +136,7 @@ fn simulate(interval_s: f64, readings_ms: &[u64], compass_interval_ms: u64) -> V
     ));
     let compass_interval = Duration::from_millis(compass_interval_ms);
     let start = Instant::now();
-    let valid = corrected(90.0, 2.0, 4.0);
+    let valid = Heading::from_degrees(90.0, 2.0, 4.0);
     let ms = |now: Instant| now.saturating_duration_since(start).as_millis() as u64;
     let (mut sent, mut newest, mut now) = (Vec::new(), 0, start);
     let mut readings = readings_ms.iter().copied().peekable();
@@ -225,7 +212,7 @@ fn a_silent_compass_is_heard_of_within_half_a_second() {
     let now = Instant::now();
     let mut sentences = slow;
     sentences.due(
-        &corrected(1.0, 0.0, 0.0),
+        &Heading::from_degrees(1.0, 0.0, 0.0),
         None,
         Trigger::Timer,
         NO_INTERVAL,

@@ -13,8 +13,7 @@ mod identity;
 mod node;
 
 use crate::config::{N2kHeading, N2kOutputConfig};
-use crate::heading_sentences::Heading;
-use crate::schedule::{Schedule, Trigger};
+use crate::heading::{Heading, Schedule, Trigger};
 use binnacle_compass::angle::{MagneticHeading, TrueHeading, Variation};
 use binnacle_input::PortEnd;
 use binnacle_input::config::AddressOwner;
@@ -87,7 +86,6 @@ impl BusHeading {
 pub(crate) struct N2kOutput {
     schedule: Schedule,
     variation: Option<Schedule>,
-    was_withheld: bool,
     newest: watch::Sender<BusHeading>,
     own_device: Option<OwnDevice>,
 }
@@ -125,7 +123,6 @@ impl N2kOutput {
             variation: config
                 .variation
                 .then(|| Schedule::new(VARIATION_INTERVAL_S.max(config.interval_s()))),
-            was_withheld: false,
             newest,
             own_device,
         };
@@ -142,7 +139,7 @@ impl N2kOutput {
         self.schedule.timer(compass_interval).unwrap_or(now)
     }
 
-    /// Sends the heading if it is due. One that has just been withheld is not valid at once.
+    /// Sends the heading if it is due.
     pub(crate) fn send(
         &mut self,
         heading: &Heading,
@@ -150,16 +147,12 @@ impl N2kOutput {
         compass_interval: Duration,
         now: Instant,
     ) {
-        let is_withheld = heading.true_heading.is_none();
-        let at_once = is_withheld && !self.was_withheld;
-        self.was_withheld = is_withheld;
-        if !at_once && !self.schedule.is_due(trigger, compass_interval, now) {
+        let is_due =
+            |schedule: &mut Schedule| schedule.take_due(heading, trigger, compass_interval, now);
+        if !is_due(&mut self.schedule) {
             return;
         }
-        self.schedule.note_sent(now);
-        let due = self.variation.as_mut();
-        let due = due.filter(|schedule| schedule.is_due(trigger, compass_interval, now));
-        let sends_variation = due.map(|schedule| schedule.note_sent(now)).is_some();
+        let sends_variation = self.variation.as_mut().is_some_and(is_due);
         self.newest.send_replace(BusHeading {
             magnetic: heading.magnetic(),
             true_heading: heading.true_heading,

@@ -3,7 +3,6 @@
 use super::*;
 use crate::SharedOutputs;
 use crate::config::OutputConfig;
-use binnacle_compass::angle::{CompassHeading, Deviation};
 use binnacle_input::{InputConfig, InputStats};
 use binnacle_nmea::n2k::{Assembler, Data, Frame, Header, actisense, text};
 use std::sync::Arc;
@@ -129,19 +128,6 @@ async fn over_ydwg(output: &str) -> (Ship, Gateway, TcpListener) {
     (ship, gateway, listener)
 }
 
-fn heading(compass: f64, deviation: f64, variation: f64) -> Heading {
-    let compass = CompassHeading::new(compass).unwrap();
-    let deviation = Deviation::new(deviation).unwrap();
-    let variation = Variation::new(variation).unwrap();
-    Heading {
-        compass: Some(compass),
-        deviation: Some(deviation),
-        variation: Some(variation),
-        true_heading: Some(compass + deviation + variation),
-        standard_error_deg: None,
-    }
-}
-
 fn near(found: f64, expected: f64) -> bool {
     (found - expected).abs() < 0.003
 }
@@ -151,7 +137,7 @@ async fn the_corrected_heading_is_sent_once_the_address_is_claimed() {
     let (mut ship, mut gateway, _listener) =
         over_ydwg("n2k = { input = \"bus\", heading = \"both\" }").await;
     // Before the claim has stood, nothing else is sent.
-    ship.send(&heading(90.0, -2.0, 5.0));
+    ship.send(&Heading::from_degrees(90.0, -2.0, 5.0));
     let claim = gateway.next().await;
     assert_eq!((claim.header.pgn, claim.header.source), (60_928, FIRST));
     let request = gateway.next().await;
@@ -164,7 +150,7 @@ async fn the_corrected_heading_is_sent_once_the_address_is_claimed() {
         (1.0, -2.0, -5.0, 359.0, 354.0),
         (359.0, 2.0, 5.0, 1.0, 6.0),
     ] {
-        ship.send(&heading(compass, deviation, variation));
+        ship.send(&Heading::from_degrees(compass, deviation, variation));
         let message = gateway.next_of(127_250).await;
         assert_eq!((message.header.source, message.header.priority), (FIRST, 2));
         let Some(Data::Heading {
@@ -196,7 +182,7 @@ async fn a_withheld_heading_is_not_available_at_once_and_the_variation_goes_on()
     let (mut ship, mut gateway, _listener) =
         over_ydwg("n2k = { input = \"bus\", heading = \"both\" }").await;
     ship.has_address(FIRST).await;
-    let given = heading(90.0, -2.0, 5.0);
+    let given = Heading::from_degrees(90.0, -2.0, 5.0);
     ship.send(&given);
     gateway.next_of(127_258).await;
     let withheld = Heading {
@@ -229,7 +215,7 @@ async fn an_address_that_is_lost_is_left_and_remembered_over_a_restart() {
     gateway.claim(FIRST + 1, 1).await;
     gateway.claim(FIRST, 2).await;
     ship.has_address(FIRST + 2).await;
-    ship.send(&heading(90.0, 0.0, 0.0));
+    ship.send(&Heading::from_degrees(90.0, 0.0, 0.0));
     let message = gateway.next_of(127_250).await;
     assert_eq!(message.header.source, FIRST + 2);
     // One with a greater NAME does not get it.
@@ -263,7 +249,7 @@ async fn a_device_without_an_address_says_so_and_sends_nothing() {
     }
     gateway.claim(FIRST, 0).await;
     while gateway.next_of(60_928).await.header.source != 254 {}
-    ship.send(&heading(90.0, 0.0, 0.0));
+    ship.send(&Heading::from_degrees(90.0, 0.0, 0.0));
     // A request for its claim is answered; the heading before it was not sent.
     gateway.say(0x18ea_ff04, &[0x00, 0xee, 0x00]).await;
     let message = gateway.next().await;
@@ -293,11 +279,11 @@ async fn a_connection_that_breaks_off_is_claimed_on_again_and_gets_no_old_headin
     let mut address = ship.outputs.own_devices()[0].address.clone();
     address.wait_for(Option::is_none).await.unwrap();
     for _ in 0..40 {
-        ship.send(&heading(10.0, 0.0, 0.0));
+        ship.send(&Heading::from_degrees(10.0, 0.0, 0.0));
     }
     let mut gateway = Gateway::accept(&listener).await;
     ship.has_address(FIRST).await;
-    ship.send(&heading(20.0, 0.0, 0.0));
+    ship.send(&Heading::from_degrees(20.0, 0.0, 0.0));
     let message = gateway.next_of(127_250).await;
     let Some(Data::Heading { deg, .. }) = Data::parse(&message) else {
         panic!("{message:?}");
@@ -334,7 +320,7 @@ async fn a_gateway_with_an_address_of_its_own_is_sent_headings_alone() {
     let read = gateway.read(&mut bytes);
     tokio::pin!(read);
     let count = loop {
-        ship.send(&heading(90.0, -2.0, 5.0));
+        ship.send(&Heading::from_degrees(90.0, -2.0, 5.0));
         tokio::select! {
             count = &mut read => break count.unwrap(),
             () = tokio::task::yield_now() => {}

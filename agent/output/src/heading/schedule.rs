@@ -2,8 +2,9 @@
 //!
 //! It is sent when a reading of the compass arrives, from that reading, if its interval has nearly
 //! passed. A timer sends it where no reading comes in time: the compass is slower than the output,
-//! or silent.
+//! or silent. A heading that has just been withheld is sent at once, whatever the interval.
 
+use super::Heading;
 use crate::config::SHORTEST_INTERVAL_SHARE;
 use std::time::Duration;
 use tokio::time::Instant;
@@ -29,6 +30,7 @@ pub enum Trigger {
 pub(crate) struct Schedule {
     interval: Duration,
     due: Option<Instant>,
+    was_withheld: bool,
 }
 
 impl Schedule {
@@ -37,6 +39,7 @@ impl Schedule {
         Schedule {
             interval: Duration::from_secs_f64(interval_s),
             due: None,
+            was_withheld: false,
         }
     }
 
@@ -62,22 +65,32 @@ impl Schedule {
         })
     }
 
-    pub(crate) fn is_due(
-        &self,
+    /// Returns whether the heading is sent now, and sets the next time if it is.
+    pub(crate) fn take_due(
+        &mut self,
+        heading: &Heading,
         trigger: Trigger,
         compass_interval: Duration,
         now: Instant,
     ) -> bool {
-        match trigger {
-            Trigger::Reading => self.due.is_none_or(|due| now + self.slack() >= due),
-            Trigger::Timer => self
-                .timer(compass_interval)
-                .is_none_or(|timer| now >= timer),
+        let is_withheld = heading.true_heading.is_none();
+        let at_once = is_withheld && !self.was_withheld;
+        self.was_withheld = is_withheld;
+        let is_due = at_once
+            || match trigger {
+                Trigger::Reading => self.due.is_none_or(|due| now + self.slack() >= due),
+                Trigger::Timer => self
+                    .timer(compass_interval)
+                    .is_none_or(|timer| now >= timer),
+            };
+        if is_due {
+            self.set_next(now);
         }
+        is_due
     }
 
     /// Sets the next time. Readings that come early do not make the mean rate higher.
-    pub(crate) fn note_sent(&mut self, now: Instant) {
+    fn set_next(&mut self, now: Instant) {
         let from = self.due.map_or(now, |due| due.max(now));
         // At once is out of turn: the next time must not move away with each.
         let from = from.min(now + self.slack());
