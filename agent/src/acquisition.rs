@@ -7,7 +7,7 @@ use binnacle_compass::time::Timestamp;
 use binnacle_instruments::config::{RolesConfig, SilenceConfig};
 use binnacle_instruments::{
     ClockCheckpoint, GnssGuard, HeardSources, Independence, Interference, OwnHeadings, OwnOutput,
-    Readings, ReckonedPlace, Roles, SentHeading, Signal, SourceReport, StatedClocks,
+    Readings, ReckonedPlace, Roles, SentHeading, Signal, SourceReport, StatedClocks, Trust,
 };
 use binnacle_observation::{Observation, Reading, is_recorded_time};
 use binnacle_wire::messages::Settings;
@@ -161,8 +161,9 @@ impl Acquisition {
         let Some(measured) = heard.checked_sub(age) else {
             return;
         };
-        let signals = self.roles.observe(seen, measured, age);
         let receiver = self.roles.receiver(seen);
+        let trust = receiver.map_or(Trust::Trusted, |receiver| self.guard.trust(receiver));
+        let signals = self.roles.observe(seen, measured, age, trust);
         self.guard.advance(self.roles.running_time(), heard);
         for signal in signals.into_iter().flatten() {
             for signal in self.guard.apply(signal, receiver).into_iter().flatten() {

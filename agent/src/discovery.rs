@@ -10,8 +10,6 @@ use serde::Serialize;
 use std::fmt::Write;
 use tokio::time::Instant;
 
-/// Talkers of satellite compasses: each satellite system, and all together.
-const SATELLITE_TALKERS: [&[u8; 2]; 7] = [b"GP", b"GN", b"GA", b"GB", b"BD", b"GL", b"GQ"];
 const GYRO_TALKER: &[u8; 2] = b"HE";
 
 /// Sources that are heard, with proposed roles.
@@ -101,7 +99,7 @@ fn propose(heard: &[Heard<'_>]) -> String {
         .into_iter()
         .partition(|(source, _)| source.talker == *GYRO_TALKER);
     for (source, _) in &others {
-        if !SATELLITE_TALKERS.contains(&&source.talker) {
+        if !source.is_of_satellites() {
             comment(
                 &mut out,
                 &format!("if {source} is a gyro compass, move it to gyro"),

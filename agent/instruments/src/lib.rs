@@ -16,6 +16,7 @@ mod stated_clock;
 mod two_sensors;
 
 pub use clock_checkpoint::ClockCheckpoint;
+pub use gnss_clock::Trust;
 pub use gnss_guard::{GnssGuard, Interference, ReckonedPlace, offset};
 pub use heard::{HeardSource, HeardSources, SourceReport};
 pub use independence::Independence;

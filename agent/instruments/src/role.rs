@@ -107,9 +107,9 @@ impl Role {
         self.own_headings.extend(own);
     }
 
-    /// Returns the number of selections.
-    pub(super) fn source_count(&self) -> usize {
-        self.selections.len()
+    /// Returns whether the selection of a rank names a talker.
+    pub(super) fn names_talker(&self, rank: usize) -> bool {
+        self.selections[rank].config.talker.is_some()
     }
 
     /// Returns the name of the role.

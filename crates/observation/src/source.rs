@@ -12,6 +12,8 @@ use std::sync::Arc;
 
 /// Talker of a magnetic compass: its true heading is made of its magnetic one.
 const MAGNETIC_COMPASS_TALKER: [u8; 2] = *b"HC";
+/// Talkers of satellite receivers: each satellite system, and all together.
+const SATELLITE_TALKERS: [[u8; 2]; 7] = [*b"GP", *b"GN", *b"GA", *b"GB", *b"BD", *b"GL", *b"GQ"];
 
 /// Source of an observation.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -51,6 +53,24 @@ impl Source {
 
     /// Returns whether both are one device, whatever the sentences.
     pub fn is_same_device(&self, other: &Source) -> bool {
+        let is_named = self.n2k_name.is_some() && other.n2k_name.is_some();
+        (is_named || self.talker == other.talker) && self.has_same_path(other)
+    }
+
+    /// Returns whether both are one satellite receiver, whose talker names the systems that it uses
+    /// at the moment.
+    pub fn is_same_receiver(&self, other: &Source) -> bool {
+        let both_of_satellites = self.is_of_satellites() && other.is_of_satellites();
+        self.is_same_device(other) || (both_of_satellites && self.has_same_path(other))
+    }
+
+    /// Returns whether its talker is a satellite receiver's.
+    pub fn is_of_satellites(&self) -> bool {
+        SATELLITE_TALKERS.contains(&self.talker)
+    }
+
+    /// Returns whether both come the same way, as far as it is named without a talker.
+    fn has_same_path(&self, other: &Source) -> bool {
         if self.input != other.input {
             return false;
         }
@@ -58,8 +78,7 @@ impl Source {
             // A device may claim another address at any time.
             return one == another;
         }
-        self.talker == other.talker
-            && self.signalk == other.signalk
+        self.signalk == other.signalk
             && self.sfi == other.sfi
             && self.sender == other.sender
             && self.n2k_address == other.n2k_address

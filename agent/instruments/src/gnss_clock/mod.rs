@@ -10,6 +10,8 @@
 //!   server's or the computer's time decides, or when the new time has lasted without
 //!   contradiction: for a day, or after a jump of less than ten minutes for as long as the old one.
 //!   A receiver that has learnt its leap seconds jumps by less than a minute.
+//! - A receiver whose position is not trusted ranks behind all that are. On board its new time is
+//!   never accepted for having lasted.
 //! - On board, the first stamp after a restart is uncertain too where the checkpoint contradicts it
 //!   ([`super::clock_checkpoint`]).
 //! - On board, a date that lags by a multiple of 1,024 weeks, after which GPS week numbers start
@@ -54,14 +56,35 @@ pub enum Step {
     Jumped(Timestamp),
 }
 
+/// Trust in a receiver, by its positions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trust {
+    /// The ship can be where it says.
+    Trusted,
+    /// The ship cannot be there, or could not of late.
+    NotTrusted,
+}
+
+/// Source of a time stamp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TimeSource {
+    /// A receiver of a rank, 0 being the best.
+    Receiver(usize, Trust),
+    /// The recording itself, which ranks behind every receiver.
+    Recording,
+}
+
 /// One clock from ranked sources of time.
 #[derive(Debug)]
 pub struct GnssClock {
     now: Option<Timestamp>,
     candidate: Option<Timestamp>,
     stale_s: f64,
+    /// Ranks of receivers.
+    receivers: usize,
+    /// Place of the active source among all, the best being 0.
     active: usize,
-    /// First stamp of each rank since the active source was heard.
+    /// First stamp of each place since the active source was heard.
     waiting: Vec<Option<Timestamp>>,
     reference: Option<ReferenceClock>,
     pace: Pace,
@@ -111,14 +134,16 @@ struct UnconfirmedJump {
 }
 
 impl GnssClock {
-    /// Creates a clock that has not been set, with sources of rank 0 to `ranks - 1`.
-    pub fn new(ranks: usize, stale_s: f64) -> GnssClock {
+    /// Creates a clock that has not been set, with receivers of rank 0 to `receivers - 1`.
+    pub fn new(receivers: usize, stale_s: f64) -> GnssClock {
+        let recording = 2 * receivers;
         GnssClock {
             now: None,
             candidate: None,
             stale_s,
-            active: ranks.saturating_sub(1),
-            waiting: vec![None; ranks],
+            receivers,
+            active: recording,
+            waiting: vec![None; recording + 1],
             reference: None,
             pace: Pace::default(),
             checkpoint: None,
@@ -199,13 +224,14 @@ impl GnssClock {
         })
     }
 
-    /// Applies a time stamp from the source of a rank, 0 being the best.
-    pub fn observe(&mut self, rank: usize, stamp: Timestamp) -> Step {
-        if !PLAUSIBLE_MICROS.contains(&stamp.micros()) || rank >= self.waiting.len() {
+    /// Applies a time stamp from a source.
+    pub fn observe(&mut self, source: TimeSource, stamp: Timestamp) -> Step {
+        let place = self.place(source);
+        if !PLAUSIBLE_MICROS.contains(&stamp.micros()) || place >= self.waiting.len() {
             return Step::Held;
         }
         let without_rollover = self.without_rollover(stamp);
-        if !self.accept_source(rank, without_rollover) {
+        if !self.accept_source(place, without_rollover) {
             return Step::Held;
         }
         self.rolled_over = without_rollover != stamp;
@@ -245,16 +271,31 @@ impl GnssClock {
 
     /// Returns whether a source may set the clock: the active one and better ones may, a worse one
     /// when the active one has been silent for long by the worse one's own time.
-    fn accept_source(&mut self, rank: usize, stamp: Timestamp) -> bool {
-        if rank > self.active && self.now.is_some() {
-            let since = *self.waiting[rank].get_or_insert(stamp);
+    fn accept_source(&mut self, place: usize, stamp: Timestamp) -> bool {
+        if place > self.active && self.now.is_some() {
+            let since = *self.waiting[place].get_or_insert(stamp);
             if stamp.seconds_since(since).abs() < self.stale_s {
                 return false;
             }
         }
-        self.active = rank;
+        self.active = place;
         self.waiting.fill(None);
         true
+    }
+
+    /// Returns the place of a source among all: receivers that are trusted, those that are not, and
+    /// the recording.
+    fn place(&self, source: TimeSource) -> usize {
+        match source {
+            TimeSource::Receiver(rank, Trust::Trusted) => rank,
+            TimeSource::Receiver(rank, Trust::NotTrusted) => self.receivers + rank,
+            TimeSource::Recording => 2 * self.receivers,
+        }
+    }
+
+    /// Returns whether the active source is a receiver that is not trusted.
+    fn is_distrusted(&self) -> bool {
+        (self.receivers..2 * self.receivers).contains(&self.active)
     }
 
     fn apply(&mut self, stamp: Timestamp) -> Step {
@@ -370,7 +411,7 @@ impl GnssClock {
         let is_accepted = if decides {
             new_s < old_s
         } else {
-            unconfirmed.lasted_s >= unconfirmed.needed_s
+            unconfirmed.lasted_s >= unconfirmed.needed_s && !self.is_distrusted()
         };
         if is_accepted {
             return self.jump(stamp);

@@ -4,6 +4,9 @@ use super::*;
 use std::ops::Range;
 use std::time::Duration;
 
+const FIRST: TimeSource = TimeSource::Receiver(0, Trust::Trusted);
+const SECOND: TimeSource = TimeSource::Receiver(1, Trust::Trusted);
+
 fn at(seconds: i64) -> Timestamp {
     Timestamp::from_micros((1_700_000_000 + seconds) * 1_000_000).unwrap()
 }
@@ -11,20 +14,26 @@ fn at(seconds: i64) -> Timestamp {
 #[test]
 fn one_wrong_stamp_moves_nothing() {
     let mut clock = GnssClock::new(1, 15.0);
-    assert_eq!(clock.observe(0, at(0)), Step::Advanced(at(0)));
-    assert_eq!(clock.observe(0, at(86_400 * 3000)), Step::Held);
-    assert_eq!(clock.observe(0, at(-7200)), Step::Held);
-    assert_eq!(clock.observe(0, at(1)), Step::Advanced(at(1)));
+    assert_eq!(clock.observe(FIRST, at(0)), Step::Advanced(at(0)));
+    assert_eq!(clock.observe(FIRST, at(86_400 * 3000)), Step::Held);
+    assert_eq!(clock.observe(FIRST, at(-7200)), Step::Held);
+    assert_eq!(clock.observe(FIRST, at(1)), Step::Advanced(at(1)));
 }
 
 #[test]
 fn a_jump_that_is_borne_out_is_a_jump() {
     for jump in [-7200, -30, 601, 86_400] {
         let mut clock = GnssClock::new(1, 15.0);
-        clock.observe(0, at(0));
-        assert_eq!(clock.observe(0, at(jump)), Step::Held);
-        assert_eq!(clock.observe(0, at(jump + 1)), Step::Jumped(at(jump + 1)));
-        assert_eq!(clock.observe(0, at(jump + 2)), Step::Advanced(at(jump + 2)));
+        clock.observe(FIRST, at(0));
+        assert_eq!(clock.observe(FIRST, at(jump)), Step::Held);
+        assert_eq!(
+            clock.observe(FIRST, at(jump + 1)),
+            Step::Jumped(at(jump + 1))
+        );
+        assert_eq!(
+            clock.observe(FIRST, at(jump + 2)),
+            Step::Advanced(at(jump + 2))
+        );
     }
 }
 
@@ -33,7 +42,7 @@ fn on_board_clock(computer: i64) -> (GnssClock, Instant) {
     let mut clock = GnssClock::new(1, 15.0);
     let start = Instant::now();
     clock.set_reference(at(computer), start);
-    assert_eq!(clock.observe(0, at(0)), Step::Advanced(at(0)));
+    assert_eq!(clock.observe(FIRST, at(0)), Step::Advanced(at(0)));
     (clock, start)
 }
 
@@ -41,7 +50,7 @@ fn on_board_clock(computer: i64) -> (GnssClock, Instant) {
 fn hear(clock: &mut GnssClock, start: Instant, seconds: Range<i64>, off_s: i64) -> Vec<Step> {
     let steps = seconds.map(|second| {
         clock.set_receive_time(start + Duration::from_secs(second.unsigned_abs()));
-        clock.observe(0, at(second + off_s))
+        clock.observe(FIRST, at(second + off_s))
     });
     steps.collect()
 }
@@ -115,12 +124,12 @@ fn a_date_of_1024_weeks_ago_is_put_right() {
 fn a_receiver_that_rolled_over_before_is_put_right_and_an_old_log_stays_old() {
     let mut clock = GnssClock::new(1, 15.0);
     clock.set_reference(at(90 * 86_400), Instant::now());
-    let rolled = clock.observe(0, at(0).plus_seconds(-2.0 * ROLL_OVER_S));
+    let rolled = clock.observe(FIRST, at(0).plus_seconds(-2.0 * ROLL_OVER_S));
     assert_eq!(rolled, Step::Advanced(at(0)));
     let mut clock = GnssClock::new(1, 15.0);
     clock.set_reference(at(0), Instant::now());
     let old = at(-2 * YEARS_S);
-    assert_eq!(clock.observe(0, old), Step::Advanced(old));
+    assert_eq!(clock.observe(FIRST, old), Step::Advanced(old));
 }
 
 /// A clock on board after a restart, with a computer that knows the time.
@@ -183,16 +192,16 @@ fn a_roll_over_is_put_right_by_a_computer_that_lost_its_time_as_well() {
         ship: at(-86_400),
         computer: at(-86_400),
     });
-    let step = clock.observe(0, at(0).plus_seconds(-ROLL_OVER_S));
+    let step = clock.observe(FIRST, at(0).plus_seconds(-ROLL_OVER_S));
     assert_eq!(step, Step::Advanced(at(0)));
 }
 
 #[test]
 fn a_second_receiver_a_little_behind_is_no_jump() {
     let mut clock = GnssClock::new(1, 15.0);
-    clock.observe(0, at(10));
+    clock.observe(FIRST, at(10));
     for _ in 0..5 {
-        assert_eq!(clock.observe(0, at(9)), Step::Held);
+        assert_eq!(clock.observe(FIRST, at(9)), Step::Held);
     }
     assert_eq!(clock.now(), Some(at(10)));
 }
@@ -200,15 +209,15 @@ fn a_second_receiver_a_little_behind_is_no_jump() {
 #[test]
 fn a_worse_source_takes_over_after_silence_and_hands_back_at_once() {
     let mut clock = GnssClock::new(2, 15.0);
-    clock.observe(0, at(0));
-    assert_eq!(clock.observe(1, at(5000)), Step::Held);
-    clock.observe(0, at(1));
+    clock.observe(FIRST, at(0));
+    assert_eq!(clock.observe(SECOND, at(5000)), Step::Held);
+    clock.observe(FIRST, at(1));
     for second in 2..17 {
-        assert_eq!(clock.observe(1, at(second)), Step::Held);
+        assert_eq!(clock.observe(SECOND, at(second)), Step::Held);
     }
-    assert_eq!(clock.observe(1, at(17)), Step::Advanced(at(17)));
-    assert_eq!(clock.observe(0, at(18)), Step::Advanced(at(18)));
-    assert_eq!(clock.observe(1, at(19)), Step::Held);
+    assert_eq!(clock.observe(SECOND, at(17)), Step::Advanced(at(17)));
+    assert_eq!(clock.observe(FIRST, at(18)), Step::Advanced(at(18)));
+    assert_eq!(clock.observe(SECOND, at(19)), Step::Held);
 }
 
 #[test]
@@ -216,7 +225,7 @@ fn a_date_before_gps_is_not_believed() {
     let mut clock = GnssClock::new(1, 15.0);
     let year_1850 = Timestamp::parse("1850-06-01T00:00:00Z").unwrap();
     for _ in 0..3 {
-        assert_eq!(clock.observe(0, year_1850), Step::Held);
+        assert_eq!(clock.observe(FIRST, year_1850), Step::Held);
     }
     assert_eq!(clock.now(), None);
 }
@@ -264,7 +273,7 @@ fn a_delay_on_the_way_and_its_end_are_no_jump() {
     // For half a minute nothing comes, then all of it at once, and again with some delay.
     for second in 600..630 {
         clock.set_receive_time(start + Duration::from_secs(630));
-        assert_eq!(clock.observe(0, at(second)), Step::Advanced(at(second)));
+        assert_eq!(clock.observe(FIRST, at(second)), Step::Advanced(at(second)));
     }
     for delay_s in [20, 0, 9] {
         for second in 0..60 {
@@ -272,7 +281,7 @@ fn a_delay_on_the_way_and_its_end_are_no_jump() {
             let heard_s = now.seconds_since(at(0)) + f64::from(delay_s);
             clock.set_receive_time(start + Duration::from_secs_f64(heard_s));
             assert_eq!(
-                clock.observe(0, now),
+                clock.observe(FIRST, now),
                 Step::Advanced(now),
                 "{delay_s} {second}"
             );
@@ -288,12 +297,12 @@ fn silence_and_the_drift_of_a_quartz_are_no_jump() {
         let heard = start + Duration::from_secs_f64(60.0 * f64::from(minute) * (1.0 + 1e-4));
         clock.set_receive_time(heard);
         let stamp = at(60 * i64::from(minute));
-        assert_eq!(clock.observe(0, stamp), Step::Advanced(stamp));
+        assert_eq!(clock.observe(FIRST, stamp), Step::Advanced(stamp));
     }
     let late = start + Duration::from_hours(50 + 24);
     clock.set_receive_time(late);
-    clock.observe(0, at(180_000 + 86_400));
-    let steps = clock.observe(0, at(180_000 + 86_401));
+    clock.observe(FIRST, at(180_000 + 86_400));
+    let steps = clock.observe(FIRST, at(180_000 + 86_401));
     assert_eq!(steps, Step::Jumped(at(180_000 + 86_401)));
 }
 
@@ -304,6 +313,32 @@ fn accelerated_instruments_are_not_judged_by_the_seconds() {
         // A thousand seconds in one, with a gap of minutes now and then.
         clock.set_receive_time(start + Duration::from_millis(second.unsigned_abs()));
         let stamp = at(second + 300 * (second / 500));
-        assert_eq!(clock.observe(0, stamp), Step::Advanced(stamp));
+        assert_eq!(clock.observe(FIRST, stamp), Step::Advanced(stamp));
     }
+}
+
+#[test]
+fn a_receiver_that_is_not_trusted_does_not_set_the_time_that_a_trusted_one_has() {
+    let spoofed = TimeSource::Receiver(0, Trust::NotTrusted);
+    let mut clock = GnssClock::new(2, 15.0);
+    clock.observe(FIRST, at(0));
+    for second in 1..60 {
+        clock.observe(spoofed, at(second + 2_400));
+        clock.observe(SECOND, at(second));
+    }
+    assert_eq!(clock.now(), Some(at(59)));
+    assert_eq!(clock.observe(FIRST, at(60)), Step::Advanced(at(60)));
+}
+
+#[test]
+fn the_false_time_of_a_receiver_that_is_not_trusted_is_never_accepted_for_having_lasted() {
+    let (mut clock, start) = on_board_clock(YEARS_S);
+    hear(&mut clock, start, 1..1_000, 0);
+    let mut say = |second: i64, off_s: i64, trust| {
+        clock.set_receive_time(start + Duration::from_secs(second.unsigned_abs()));
+        clock.observe(TimeSource::Receiver(0, trust), at(second + off_s))
+    };
+    let steps = (1_000..90_000).map(|second| say(second, 300, Trust::NotTrusted));
+    assert!(steps.into_iter().all(|step| step == Step::Held));
+    assert_eq!(say(90_000, 0, Trust::Trusted), Step::Jumped(at(90_000)));
 }

@@ -20,11 +20,11 @@ mod reckoning;
 
 pub use reckoning::{ReckonedPlace, offset};
 
+use super::gnss_clock::Trust;
 use super::roles::{GnssSource, Instrument, ReferenceHeading, Refusal, Signal};
 use binnacle_compass::angle::TrueHeading;
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
-use binnacle_observation::Source;
 use receiver::{Evidence, Receiver};
 use reckoning::{Motion, Reckoning, Speed};
 use tokio::time::Instant;
@@ -154,6 +154,20 @@ impl GnssGuard {
         [Some(signal), None]
     }
 
+    /// Returns the trust in a receiver by its fixes so far. One that gives none is trusted as those
+    /// of its selection are.
+    pub fn trust(&self, receiver: GnssSource<'_>) -> Trust {
+        let is_trusted = match self.find(receiver) {
+            Some(index) => self.receivers[index].is_trusted,
+            None => self.trusts_selection(receiver.rank),
+        };
+        if is_trusted {
+            Trust::Trusted
+        } else {
+            Trust::NotTrusted
+        }
+    }
+
     /// Records the corrected heading, which serves where there is no gyro.
     pub fn note_corrected(&mut self, heading: Option<TrueHeading>) {
         let at_s = self.clock.seconds;
@@ -230,7 +244,7 @@ impl GnssGuard {
     /// sentence.
     fn hear(&mut self, fix: Position, of: GnssSource<'_>) -> Option<usize> {
         let now_s = self.clock.seconds;
-        let Some(index) = self.find(of.source) else {
+        let Some(index) = self.find(of) else {
             if self.receivers.len() >= MAX_RECEIVERS {
                 return None;
             }
@@ -248,9 +262,9 @@ impl GnssGuard {
         Some(index)
     }
 
-    fn find(&self, source: &Source) -> Option<usize> {
+    fn find(&self, of: GnssSource<'_>) -> Option<usize> {
         let mut receivers = self.receivers.iter();
-        receivers.position(|receiver| receiver.source.is_same_device(source))
+        receivers.position(|receiver| receiver.is_receiver(of))
     }
 
     fn is_heard(&self, receiver: &Receiver) -> bool {
@@ -270,13 +284,17 @@ impl GnssGuard {
     /// those of its selection.
     fn uses(&self, of: GnssSource<'_>) -> bool {
         let used = self.used();
-        if let Some(index) = self.find(of.source) {
+        if let Some(index) = self.find(of) {
             return used == Some(index);
         }
-        let mut peers = self.receivers.iter().filter(|peer| peer.rank == of.rank);
         self.interference.is_none()
             && used.is_none_or(|used| of.rank <= self.receivers[used].rank)
-            && peers.all(|peer| peer.is_trusted)
+            && self.trusts_selection(of.rank)
+    }
+
+    fn trusts_selection(&self, rank: usize) -> bool {
+        let mut peers = self.receivers.iter().filter(|peer| peer.rank == rank);
+        peers.all(|peer| peer.is_trusted)
     }
 
     /// Returns whether the first receiver that is heard is not trusted: what else comes from the

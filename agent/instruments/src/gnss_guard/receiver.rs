@@ -16,6 +16,7 @@ const ACCEPT_AFTER_S: f64 = 86_400.0;
 #[derive(Debug)]
 pub(super) struct Receiver {
     pub(super) source: Source,
+    names_talker: bool,
     /// Best selection that its fixes match.
     pub(super) rank: usize,
     /// Time of its latest fix by the guard's clock, seconds.
@@ -53,6 +54,7 @@ impl Receiver {
     pub(super) fn new(of: GnssSource<'_>, now_s: f64, is_trusted: bool) -> Receiver {
         Receiver {
             source: of.source.clone(),
+            names_talker: of.names_talker,
             rank: of.rank,
             heard_s: now_s,
             is_trusted,
@@ -61,6 +63,16 @@ impl Receiver {
             trusted_s: 0.0,
             elsewhere: None,
         }
+    }
+
+    /// Returns whether an observation is of this receiver.
+    pub(super) fn is_receiver(&self, of: GnssSource<'_>) -> bool {
+        let own = GnssSource {
+            source: &self.source,
+            rank: self.rank,
+            names_talker: self.names_talker,
+        };
+        own.is_same_receiver(of)
     }
 
     /// Returns the order of two receivers, the better one first.

@@ -1,5 +1,6 @@
 use super::*;
 use binnacle_compass::sample::SourceId;
+use binnacle_observation::Source;
 use std::time::Duration;
 
 /// Ship on a steady heading with gyro, log and receiver, a second at a time.
@@ -65,11 +66,11 @@ impl Ship {
 
     /// Applies a signal of a receiver.
     fn receive(&mut self, rank: usize, signal: Signal) -> [Option<Signal>; 2] {
-        let talker = [*b"GP", *b"GN"][rank];
-        let source = Source::of_sentence("bridge".into(), talker, *b"RMC");
+        let source = sentence([*b"GP", *b"GN"][rank], *b"RMC");
         let of = GnssSource {
             source: &source,
             rank,
+            names_talker: true,
         };
         self.guard.apply(signal, Some(of))
     }
@@ -305,4 +306,37 @@ fn a_receiver_that_is_false_when_it_is_first_heard_changes_nothing() {
         source: SourceId::new(1),
     });
     assert_eq!(ship.guard.apply(heading, None), [Some(heading), None]);
+}
+
+fn sentence(talker: [u8; 2], sentence: [u8; 3]) -> Source {
+    Source::of_sentence("bridge".into(), talker, sentence)
+}
+
+/// Returns the receiver of a source that a selection without a talker matches.
+fn of_any_talker(source: &Source) -> GnssSource<'_> {
+    GnssSource {
+        source,
+        rank: 0,
+        names_talker: false,
+    }
+}
+
+#[test]
+fn a_receiver_that_names_the_systems_it_uses_at_the_moment_is_one() {
+    let mut guard = GnssGuard::new(15.0);
+    let place = at(43.0, -3.0);
+    for talker in [*b"GN", *b"GP", *b"GN"] {
+        let source = sentence(talker, *b"RMC");
+        let used = guard.apply(Signal::Position(place), Some(of_any_talker(&source)));
+        assert_eq!(used[0], Some(Signal::Position(place)));
+    }
+    let source = sentence(*b"GN", *b"RMC");
+    guard.apply(
+        Signal::Position(at(40.0, -3.0)),
+        Some(of_any_talker(&source)),
+    );
+    for (talker, trust) in [(*b"GP", Trust::NotTrusted), (*b"SN", Trust::NotTrusted)] {
+        let clock = sentence(talker, *b"ZDA");
+        assert_eq!(guard.trust(of_any_talker(&clock)), trust);
+    }
 }

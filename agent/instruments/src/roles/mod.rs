@@ -5,7 +5,7 @@
 //! itself invalid counts as silent. A true heading of the device that serves as the compass is made
 //! of the compass, and is no reference.
 
-use super::gnss_clock::{GnssClock, Step};
+use super::gnss_clock::{GnssClock, Step, TimeSource, Trust};
 use super::role::{Moment, Role, Use};
 use crate::config::{RolesConfig, SilenceConfig};
 use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
@@ -95,6 +95,19 @@ pub struct GnssSource<'a> {
     pub source: &'a Source,
     /// Selection of the position that it matches, 0 being the best.
     pub rank: usize,
+    /// Set if that selection names its talker, which then tells receivers on one line apart.
+    pub names_talker: bool,
+}
+
+impl GnssSource<'_> {
+    /// Returns whether both are one receiver.
+    pub fn is_same_receiver(self, other: GnssSource<'_>) -> bool {
+        let (source, other_source) = (self.source, other.source);
+        if self.names_talker || other.names_talker {
+            return source.is_same_device(other_source);
+        }
+        source.is_same_receiver(other_source)
+    }
 }
 
 /// The vessel's instruments and its clock.
@@ -136,8 +149,7 @@ impl Roles {
                 &config.temperature,
                 sampled(silence.temperature),
             ),
-            // A recording's own time stamps rank behind every receiver.
-            clock: GnssClock::new(config.position.len() + 1, position_s),
+            clock: GnssClock::new(config.position.len(), position_s),
             refused: Vec::new(),
         }
     }
@@ -220,17 +232,18 @@ impl Roles {
 
     /// Applies the time that a recording gives a line: used when no receiver gives any.
     pub fn observe_recorded_time(&mut self, stamp: Timestamp) -> Option<Signal> {
-        self.set_clock(self.position.source_count(), stamp)
+        self.set_clock(TimeSource::Recording, stamp)
     }
 
     /// Returns the signals of an observation of some age on arrival: none when its source has no
     /// role, or when a better source is alive. Every receiver gives its positions: which of them is
-    /// used depends on whether it is trusted.
+    /// used depends on whether it is trusted, as is the receiver of this observation or not.
     pub fn observe(
         &mut self,
         seen: &Observation,
         measured: Instant,
         age: Duration,
+        trust: Trust,
     ) -> [Option<Signal>; 3] {
         let moment = self.moment(measured, age);
         match seen.reading {
@@ -251,11 +264,27 @@ impl Roles {
                 position,
                 time,
                 sog_kn,
-            } => self.fix(seen, moment, position, time, sog_kn),
+            } => {
+                let Some(rank) = self.position.rank(seen) else {
+                    return single(None);
+                };
+                if !self.position.is_recent(moment) {
+                    return single(None);
+                }
+                // Time first: the fix belongs to the time it carries.
+                let receiver = TimeSource::Receiver(rank, trust);
+                [
+                    time.and_then(|stamp| self.set_clock(receiver, stamp)),
+                    Some(Signal::Position(position)),
+                    sog_kn.map(Signal::Speed),
+                ]
+            }
             Reading::Time(stamp) => {
                 let rank = self.position.device_rank(&seen.source);
                 let rank = rank.filter(|_| self.position.is_recent(moment));
-                single(rank.and_then(|rank| self.set_clock(rank, stamp)))
+                single(
+                    rank.and_then(|rank| self.set_clock(TimeSource::Receiver(rank, trust), stamp)),
+                )
             }
             Reading::Speed { sog_kn } => {
                 let used = self.is_from_receiver(seen, moment);
@@ -343,10 +372,16 @@ impl Roles {
         let source = &seen.source;
         let rank = match seen.reading {
             Reading::Fix { .. } => self.position.rank(seen),
-            Reading::Speed { .. } | Reading::Course(_) => self.position.device_rank(source),
+            Reading::Speed { .. } | Reading::Course(_) | Reading::Time(_) => {
+                self.position.device_rank(source)
+            }
             _ => None,
         };
-        rank.map(|rank| GnssSource { source, rank })
+        rank.map(|rank| GnssSource {
+            source,
+            rank,
+            names_talker: self.position.names_talker(rank),
+        })
     }
 
     /// Records that the position of a source was used.
@@ -358,32 +393,8 @@ impl Roles {
         self.position.is_recent(moment) && self.position.device_rank(&seen.source).is_some()
     }
 
-    fn fix(
-        &mut self,
-        seen: &Observation,
-        moment: Moment,
-        position: Position,
-        time: Option<Timestamp>,
-        sog_kn: Option<f64>,
-    ) -> [Option<Signal>; 3] {
-        let Some(rank) = self
-            .position
-            .rank(seen)
-            .filter(|_| self.position.is_recent(moment))
-        else {
-            return single(None);
-        };
-        // Time first: the fix belongs to the time it carries.
-        let time = time.and_then(|stamp| self.set_clock(rank, stamp));
-        [
-            time,
-            Some(Signal::Position(position)),
-            sog_kn.map(Signal::Speed),
-        ]
-    }
-
-    fn set_clock(&mut self, rank: usize, stamp: Timestamp) -> Option<Signal> {
-        match self.clock.observe(rank, stamp) {
+    fn set_clock(&mut self, source: TimeSource, stamp: Timestamp) -> Option<Signal> {
+        match self.clock.observe(source, stamp) {
             Step::Held => None,
             Step::Advanced(now) => Some(Signal::Time(now)),
             Step::Jumped(now) => Some(Signal::Jump(now)),

@@ -53,7 +53,7 @@ position = [{ input = "a", talker = "GP", sentence = "RMC" }]
 "#;
 
 fn first(roles: &mut Roles, observation: &Observation) -> Option<Signal> {
-    roles.observe(observation, Instant::now(), Duration::ZERO)[0]
+    roles.observe(observation, Instant::now(), Duration::ZERO, Trust::Trusted)[0]
 }
 
 #[test]
@@ -297,7 +297,7 @@ fn an_old_reading_does_not_serve() {
     let compass = seen("a", "HCHDG", raw(205.5));
     let mut at_age = |seconds| {
         let age = Duration::from_secs(seconds);
-        roles.observe(&compass, Instant::now(), age)[0]
+        roles.observe(&compass, Instant::now(), age, Trust::Trusted)[0]
     };
     assert_eq!(at_age(16), None);
     assert!(at_age(14).is_some());
