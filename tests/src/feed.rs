@@ -58,12 +58,21 @@ impl Progress {
     }
 }
 
+/// State of the bridge's satellite receiver.
+#[derive(Clone, Copy, Debug, Default)]
+struct Receiver {
+    /// Error of its clock, seconds.
+    clock_off_s: f64,
+    /// True while its position is false.
+    is_spoofed: bool,
+}
+
 /// A bridge that sends its sentences to one agent.
 #[derive(Debug)]
 pub struct Feed {
     address: SocketAddr,
     pace: watch::Sender<Pace>,
-    clock: watch::Sender<f64>,
+    receiver: watch::Sender<Receiver>,
     progress: watch::Receiver<Progress>,
     task: JoinHandle<Result<()>>,
 }
@@ -92,7 +101,7 @@ impl Feed {
         let listener = TcpListener::bind((address, 0)).await?;
         let address = listener.local_addr()?;
         let (pace, paces) = watch::channel(pace);
-        let (clock, clock_off_s) = watch::channel(0.0);
+        let (receiver, receivers) = watch::channel(Receiver::default());
         let (sender, progress) = watch::channel(Progress::Waiting);
         let bridge = Bridge {
             listener,
@@ -100,14 +109,14 @@ impl Feed {
             source: BufReader::with_capacity(PIECE, source),
             piece: Vec::with_capacity(2 * PIECE),
             paces,
-            clock_off_s,
+            receivers,
             sender,
         };
         let task = tokio::spawn(bridge.run());
         Ok(Feed {
             address,
             pace,
-            clock,
+            receiver,
             progress,
             task,
         })
@@ -132,7 +141,20 @@ impl Feed {
     /// # Errors
     /// Fails when the feed has failed.
     pub fn set_clock(&self, off_s: f64) -> Result<()> {
-        self.clock.send(off_s).context("the feed has ended")
+        let mut receiver = *self.receiver.borrow();
+        receiver.clock_off_s = off_s;
+        self.receiver.send(receiver).context("the feed has ended")
+    }
+
+    /// Moves the receiver's position in circles off Portugal, or ends that; pace and progress use
+    /// the right time.
+    ///
+    /// # Errors
+    /// Fails when the feed has failed.
+    pub fn set_spoofed(&self, is_spoofed: bool) -> Result<()> {
+        let mut receiver = *self.receiver.borrow();
+        receiver.is_spoofed = is_spoofed;
+        self.receiver.send(receiver).context("the feed has ended")
     }
 
     /// Waits until the bridge's progress is `enough`.
@@ -164,7 +186,7 @@ struct Bridge<S> {
     source: BufReader<S>,
     piece: Vec<u8>,
     paces: watch::Receiver<Pace>,
-    clock_off_s: watch::Receiver<f64>,
+    receivers: watch::Receiver<Receiver>,
     sender: watch::Sender<Progress>,
 }
 
@@ -178,12 +200,12 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
                 break;
             }
             let fix = time_of_fix(&self.piece[start..]);
-            let off_s = *self.clock_off_s.borrow();
-            if off_s != 0.0
-                && let Some(wrong) = with_time_shifted(&self.piece[start..], off_s)
-            {
-                self.piece.truncate(start);
-                self.piece.extend(wrong);
+            let receiver = *self.receivers.borrow();
+            if receiver.clock_off_s != 0.0 {
+                self.change(start, |line| with_time_shifted(line, receiver.clock_off_s));
+            }
+            if receiver.is_spoofed {
+                self.change(start, with_false_position);
             }
             if let Some(time) = fix {
                 self.sender.send_replace(Progress::At(time));
@@ -208,6 +230,14 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
         self.sender.send_replace(Progress::Ended);
         // The instruments fall silent; the connection stays open.
         std::future::pending().await
+    }
+
+    /// Puts another sentence in place of the last one, if there is one to put.
+    fn change(&mut self, start: usize, change: impl FnOnce(&[u8]) -> Option<Vec<u8>>) {
+        if let Some(changed) = change(&self.piece[start..]) {
+            self.piece.truncate(start);
+            self.piece.extend(changed);
+        }
     }
 
     /// Sends the piece to the connected agent, or waits for one.
@@ -250,9 +280,7 @@ fn time_of_fix(line: &[u8]) -> Option<Timestamp> {
 
 /// Returns an RMC or ZDA sentence with its time shifted.
 fn with_time_shifted(line: &[u8], off_s: f64) -> Option<Vec<u8>> {
-    let text = std::str::from_utf8(line).ok()?;
-    let (body, _) = text.strip_prefix('$')?.trim_end().split_once('*')?;
-    let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
+    let mut fields = fields_of(line)?;
     let is_zda = fields[0].ends_with("ZDA");
     let date = if is_zda {
         format!("{}-{}-{}", fields[4], fields[3], fields[2])
@@ -279,9 +307,37 @@ fn with_time_shifted(line: &[u8], off_s: f64) -> Option<Vec<u8>> {
     } else {
         fields[9] = format!("{day}{month}{}", part(2, 4)?);
     }
+    Some(sentence_of(&fields))
+}
+
+/// Returns an RMC sentence with a position that goes in circles of a mile off Portugal, six minutes
+/// each.
+fn with_false_position(line: &[u8]) -> Option<Vec<u8>> {
+    let seconds = time_of_fix(line)?.micros() / 1_000_000;
+    let mut fields = fields_of(line)?;
+    let (north, east) = (seconds as f64).to_radians().sin_cos();
+    let minutes = |of: f64| format!("{:07.4}", 30.0 + of);
+    let place = [
+        format!("40{}", minutes(north)),
+        "N".to_owned(),
+        format!("010{}", minutes(-east)),
+        "W".to_owned(),
+    ];
+    fields.get_mut(3..7)?.clone_from_slice(&place);
+    Some(sentence_of(&fields))
+}
+
+/// Returns the fields of a sentence, the first one with talker and name.
+fn fields_of(line: &[u8]) -> Option<Vec<String>> {
+    let text = std::str::from_utf8(line).ok()?;
+    let (body, _) = text.strip_prefix('$')?.trim_end().split_once('*')?;
+    Some(body.split(',').map(str::to_owned).collect())
+}
+
+fn sentence_of(fields: &[String]) -> Vec<u8> {
     let body = fields.join(",");
     let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
-    Some(format!("${body}*{sum:02X}\r\n").into_bytes())
+    format!("${body}*{sum:02X}\r\n").into_bytes()
 }
 
 #[cfg(test)]
@@ -297,6 +353,16 @@ mod tests {
         let zda = with_time_shifted(b"$GPZDA,073015.00,21,11,2026,,*00\r\n", -86_400.0).unwrap();
         assert!(zda.starts_with(b"$GPZDA,073015.00,20,11,2026,,*"));
         assert_eq!(with_time_shifted(b"$HCHDG,010.0,,,,*00\r\n", 1.0), None);
+    }
+
+    #[test]
+    fn a_false_position_keeps_its_time_and_circles() {
+        let fix = b"$GPRMC,073015.00,A,4321.10,N,00301.50,W,12.4,085.0,211126,,,A*73\r\n";
+        let moved = with_false_position(fix).unwrap();
+        assert_eq!(time_of_fix(&moved), time_of_fix(fix));
+        let fields = fields_of(&moved).unwrap();
+        assert!(fields[3].starts_with("40") && fields[5].starts_with("010"));
+        assert_eq!(with_false_position(b"$HCHDG,010.0,,,,*00\r\n"), None);
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! Faults on board: a full or read-only disk, a receiver with a wrong clock,
-//! and hostile input from outside.
+//! Faults on board: a full or read-only disk, a receiver with a wrong clock or
+//! a false position, and hostile input from outside.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
@@ -13,6 +13,7 @@ use binnacle_tests::process::program::output_of;
 use binnacle_tests::records::{Spool, clear_journal, ensure_records_match, stored_samples};
 use binnacle_tests::sailing::{TIMEOUT, day};
 use binnacle_tests::{Pace, Progress, Setup, ShipAndServer, eventually};
+use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Write;
@@ -316,6 +317,79 @@ async fn wrong_from_the_start() -> Result<()> {
 }
 
 /// Sails on while the agent's clock stands still.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_spoofed_hour_is_an_alert_ashore_with_its_place_until_it_passes() {
+    spoofed_hour().await.unwrap();
+}
+
+async fn spoofed_hour() -> Result<()> {
+    const HOUR: f64 = 1.0 / 24.0;
+    let setup = Setup {
+        uplink: "profile = \"broadband\"\npoll_s = 2\nretry_min_s = 0.2",
+        ..Setup::default()
+    };
+    let mut system = ShipAndServer::start_with(setup, |_| Ok(())).await?;
+    system.sail_until(1.0).await?;
+    system.voyage.feed.set_spoofed(true)?;
+    system.sail_until(1.0 + HOUR).await?;
+    let alert = interference_alert(&system, |found| !found.is_empty()).await?;
+    let summary = alert[0]["summary"].to_string();
+    // Where she is, and not where the receiver says.
+    ensure!(
+        summary.contains("GNSS interference near 46.") && summary.contains("since 2026-10-02 00:"),
+        "{summary}"
+    );
+    system.voyage.feed.set_spoofed(false)?;
+    system.sail_until(1.0 + 2.0 * HOUR).await?;
+    interference_alert(&system, <[Value]>::is_empty).await?;
+    let path = format!("/vessels/{}/changes", system.vessel);
+    let timeline = system.server.get(&path).await?;
+    let changes = timeline["changes"].as_array().context("changes")?;
+    let [met] = changes.as_slice() else {
+        bail!("{timeline}");
+    };
+    let time = |name: &str| Timestamp::parse(met[name].as_str().unwrap_or_default());
+    let lasted_s = time("ended")?.seconds_since(time("from")?);
+    ensure!(
+        met["cause"] == "gnss_interference" && (3_000.0..6_000.0).contains(&lasted_s),
+        "{met}"
+    );
+
+    let path = format!("/vessels/{}/samples", system.vessel);
+    let mut left_out = 0;
+    for sample in system.server.list(&path).await? {
+        let is_reckoned = sample["position_reckoned"] == true;
+        ensure!(
+            (sample["reason"] == "gnss_interference") == is_reckoned,
+            "{sample}"
+        );
+        ensure!(!is_reckoned || sample["used"] == false, "{sample}");
+        left_out += u32::from(is_reckoned);
+    }
+    ensure!(left_out >= 4, "{left_out} samples");
+    ensure_she_sailed(&stored_samples(&system.server, system.vessel).await?)?;
+    system.check_and_stop().await
+}
+
+/// Waits until the alerts of interference ashore are as wanted, and returns
+/// them.
+async fn interference_alert(
+    system: &ShipAndServer,
+    wanted: impl Fn(&[Value]) -> bool,
+) -> Result<Vec<Value>> {
+    eventually("the alert is as wanted", TIMEOUT, async || {
+        let alerts = system.server.list("/alerts?state=raised").await?;
+        let is_wanted = |alert: &Value| alert["cause"] == "gnss_interference";
+        let found: Vec<Value> = alerts.into_iter().filter(is_wanted).collect();
+        Ok(if wanted(&found) {
+            Ok(found)
+        } else {
+            Err(format!("{found:?}"))
+        })
+    })
+    .await
+}
+
 async fn reach(system: &mut ShipAndServer, days: f64) -> Result<()> {
     system.voyage.feed.set_pace(Pace::FastUntil(day(days)))?;
     let there = |progress: &Progress| progress.time() >= Some(day(days));
