@@ -143,6 +143,8 @@ async fn a_spoofed_hour_is_an_alert_and_the_heading_goes_on_from_the_reckoned_pl
         since.is_some_and(|since| since.starts_with("2026-09-01T02:00:0")),
         "{status}"
     );
+    let advice = status["gnss_interference"]["advice"].as_str().unwrap();
+    assert!(advice.starts_with("Navigate without GNSS"), "{advice}");
     assert_eq!(status["satellite_deg"], Value::Null, "{status}");
     let at = |name: &str| status["position"][name].as_f64().unwrap();
     let off_nm = miles(at("lat"), at("lon"), bridge::place(seconds - 1));

@@ -24,6 +24,8 @@ const LIST_INTERVAL: Duration = Duration::from_secs(30);
 const COMPASS_ALERT: u32 = 10_001;
 /// Identifier of the heading-difference alarm.
 const DIFFERENCE_ALERT: u32 = 10_002;
+/// Identifier of the alert of GNSS interference.
+const INTERFERENCE_ALERT: u32 = 10_003;
 
 /// Conditions of the agent's alerts.
 #[derive(Clone, Debug, Default)]
@@ -32,14 +34,16 @@ pub struct AlertConditions {
     pub compass: Option<AlertCondition>,
     /// Corrected heading and reference differ by more than a limit.
     pub difference: Option<AlertCondition>,
+    /// GNSS interference: no receiver is trusted.
+    pub interference: Option<AlertCondition>,
 }
 
 /// Alerts, and the sentences about them that wait to be sent.
 #[derive(Debug)]
 pub struct AlertSentences {
     talker: [u8; 2],
-    compass: ManagedAlert,
-    difference: ManagedAlert,
+    /// Alerts in the order of [`AlertConditions`].
+    alerts: [ManagedAlert; 3],
     waiting: Vec<Line>,
     alf_message: u8,
     alc_message: u8,
@@ -52,8 +56,7 @@ impl AlertSentences {
     pub fn new(talker: [u8; 2]) -> AlertSentences {
         AlertSentences {
             talker,
-            compass: ManagedAlert::new(COMPASS_ALERT),
-            difference: ManagedAlert::new(DIFFERENCE_ALERT),
+            alerts: [COMPASS_ALERT, DIFFERENCE_ALERT, INTERFERENCE_ALERT].map(ManagedAlert::new),
             waiting: Vec::new(),
             alf_message: 0,
             alc_message: 0,
@@ -65,11 +68,15 @@ impl AlertSentences {
     /// Applies the conditions as they are now.
     pub fn update(&mut self, conditions: AlertConditions, time: Option<Timestamp>, now: Instant) {
         let time = time.and_then(time_of_day);
-        if self.compass.update(conditions.compass, time, now) {
-            self.report(COMPASS_ALERT);
-        }
-        if self.difference.update(conditions.difference, time, now) {
-            self.report(DIFFERENCE_ALERT);
+        let conditions = [
+            conditions.compass,
+            conditions.difference,
+            conditions.interference,
+        ];
+        for (index, condition) in conditions.into_iter().enumerate() {
+            if self.alerts[index].update(condition, time, now) {
+                self.report(index);
+            }
         }
     }
 
@@ -83,20 +90,18 @@ impl AlertSentences {
         if command.alert.manufacturer != Some(MANUFACTURER) {
             return None;
         }
-        let alerts = [&mut self.compass, &mut self.difference];
-        let named = alerts
-            .into_iter()
-            .find(|alert| alert.is_named_by(command.alert));
-        let number = command.alert.number;
-        match named.map(|alert| alert.command(command.command, now)) {
-            Some(Effect::Acknowledged(id)) => Some(id),
+        let mut alerts = self.alerts.iter();
+        let named = alerts.position(|alert| alert.is_named_by(command.alert));
+        let effect = named.map(|index| (index, self.alerts[index].command(command.command, now)));
+        match effect {
+            Some((_, Effect::Acknowledged(id))) => Some(id),
             // The next update reports it.
-            Some(Effect::Silenced) => None,
-            Some(Effect::Requested) => {
-                self.report(number);
+            Some((_, Effect::Silenced)) => None,
+            Some((index, Effect::Requested)) => {
+                self.report(index);
                 None
             }
-            Some(Effect::Refused) | None => {
+            Some((_, Effect::Refused)) | None => {
                 let time = time.and_then(time_of_day);
                 let (id, refused) = (command.alert, command.command);
                 let mut text = Vec::new();
@@ -107,15 +112,11 @@ impl AlertSentences {
         }
     }
 
-    fn report(&mut self, number: u32) {
-        let alert = if number == COMPASS_ALERT {
-            &self.compass
-        } else {
-            &self.difference
-        };
+    fn report(&mut self, index: usize) {
+        let alert = self.alerts[index].alert();
         let message = self.alf_message;
         let mut text = Vec::new();
-        write_alf(self.talker, &alert.alert(), message, &mut text);
+        write_alf(self.talker, &alert, message, &mut text);
         self.send(&text);
         self.alf_message = (message + 1) % 10;
     }
@@ -139,8 +140,9 @@ impl AlertSentences {
     }
 
     fn write_list(&mut self) {
-        let alerts = [&self.compass, &self.difference].into_iter();
-        let listed: Vec<(AlertId, u8)> = alerts
+        let listed: Vec<(AlertId, u8)> = self
+            .alerts
+            .iter()
             .filter(|alert| !alert.is_normal())
             .map(|alert| (alert.id(), alert.revision()))
             .collect();
@@ -268,10 +270,14 @@ mod tests {
         bridge.conditions = AlertConditions {
             compass: Some(condition(1)),
             difference: Some(condition(2)),
+            interference: Some(condition(3)),
         };
         bridge.said(0);
-        let acknowledged = bridge.command("CAACN,070510,BIN,10002,1,A,C", 1);
-        assert_eq!(acknowledged, Some(Uuid::from_u128(2)));
+        for number in 1..=3 {
+            let body = format!("CAACN,070510,BIN,{},1,A,C", 10_000 + number);
+            let acknowledged = bridge.command(&body, 1);
+            assert_eq!(acknowledged, Some(Uuid::from_u128(number)));
+        }
         let difference = bridge.conditions.difference.as_mut().unwrap();
         difference.is_acknowledged = true;
         let said = bridge.said(1);

@@ -2,6 +2,7 @@
 //! was acknowledged, and short texts in capitals.
 
 use super::heading_difference::{DifferenceReference, HeadingDifference};
+use super::interference::InterferenceAlert;
 use super::record::AlertRecord;
 use binnacle_output::AlertCondition;
 use binnacle_wire::alert::Suspect;
@@ -49,6 +50,18 @@ impl From<&HeadingDifference> for AlertCondition {
                 "COMPASS AND {reference} DIFFER OVER {} DEG",
                 alarm.limit_deg
             ),
+        }
+    }
+}
+
+impl From<&InterferenceAlert> for AlertCondition {
+    fn from(alert: &InterferenceAlert) -> AlertCondition {
+        AlertCondition {
+            id: alert.id,
+            is_active: alert.is_open,
+            is_acknowledged: alert.acknowledged,
+            title: "GNSS NOT TRUSTED",
+            description: "INTERFERENCE. DO NOT USE GNSS POSITION.".to_owned(),
         }
     }
 }

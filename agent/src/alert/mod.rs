@@ -1,5 +1,5 @@
-//! Alerts of the agent itself: the corrected compass and its references disagree, and a plain
-//! difference of headings. They need no link.
+//! Alerts of the agent itself: the corrected compass and its references disagree, a plain
+//! difference of headings, and GNSS interference. They need no link.
 //!
 //! Invariants of the first, which the server gets as well:
 //!
@@ -13,6 +13,7 @@
 mod alarm_sentence;
 mod condition;
 mod heading_difference;
+mod interference;
 mod monitor;
 mod record;
 
@@ -20,5 +21,6 @@ pub(crate) use alarm_sentence::AlarmSentence;
 pub(crate) use heading_difference::{
     Comparison, DifferenceMonitor, DifferenceReference, HeadingDifference, HeadingDifferenceStatus,
 };
+pub(crate) use interference::{InterferenceMonitor, InterferenceStatus};
 pub(crate) use monitor::{ActiveCard, AlertMonitor};
 pub(crate) use record::{AlertRecord, AlertStatus};

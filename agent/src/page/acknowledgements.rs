@@ -27,10 +27,9 @@ pub(super) async fn acknowledge(
     visitor: Visitor,
     Json(seen): Json<Acknowledgement>,
 ) -> Result<Json<Acknowledgement>, Refusal> {
-    let difference = page.status.borrow().heading_difference.clone();
-    let difference = difference.filter(|difference| difference.alarm.id == seen.id);
-    let is_new = match difference {
-        Some(difference) => !difference.alarm.acknowledged,
+    let is_acknowledged = acknowledged_on_board(&page, seen.id);
+    let is_new = match is_acknowledged {
+        Some(is_acknowledged) => !is_acknowledged,
         None => save_acknowledgement(&page.spool, seen.id).await?,
     };
     if is_new {
@@ -39,6 +38,23 @@ pub(super) async fn acknowledge(
         page.acknowledged.send_replace(Some(seen.id));
     }
     Ok(Json(seen))
+}
+
+/// Returns whether an alert was acknowledged that only matters on board; `None` for another one.
+fn acknowledged_on_board(page: &PageState, id: Uuid) -> Option<bool> {
+    let status = page.status.borrow();
+    let difference = status.heading_difference.as_ref();
+    let difference = difference.map(|difference| &difference.alarm);
+    let interference = status.gnss_interference.as_ref();
+    let interference = interference.map(|interference| &interference.alert);
+    let of_both = [
+        difference.map(|alarm| (alarm.id, alarm.acknowledged)),
+        interference.map(|alert| (alert.id, alert.acknowledged)),
+    ];
+    let mut of_both = of_both.into_iter().flatten();
+    of_both
+        .find(|(known, _)| *known == id)
+        .map(|(_, acknowledged)| acknowledged)
 }
 
 /// Stores the acknowledgement of the last alert. Returns whether there was none before.

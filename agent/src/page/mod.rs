@@ -306,29 +306,39 @@ pub(crate) mod tests {
     }
 
     #[tokio::test]
-    async fn a_heading_difference_is_acknowledged_too() {
+    async fn alerts_that_are_not_sent_ashore_are_acknowledged_too() {
         let (_directory, mut page, _) = page().await;
-        let id = Uuid::from_u128(0xd1);
-        let difference = serde_json::json!({
-            "id": id, "is_open": true, "acknowledged": false, "reference": "gyro",
-            "difference_deg": 12.0, "limit_deg": 10.0, "says": "they differ", "advice": "",
+        let [of_headings, of_gnss] = [0xd1, 0xd2].map(Uuid::from_u128);
+        let status = serde_json::json!({
+            "heading_difference": {
+                "id": of_headings, "is_open": true, "acknowledged": false, "reference": "gyro",
+                "difference_deg": 12.0, "limit_deg": 10.0, "says": "they differ", "advice": "",
+            },
+            "gnss_interference": {
+                "id": of_gnss, "acknowledged": false, "since": null,
+                "place": { "lat": 36.0, "lon": 15.0 }, "says": "interference", "advice": "",
+            },
         });
         let status = Status {
-            heading_difference: serde_json::from_value(difference).unwrap(),
+            heading_difference: serde_json::from_value(status["heading_difference"].clone())
+                .unwrap(),
+            gnss_interference: serde_json::from_value(status["gnss_interference"].clone()).unwrap(),
             ..Status::default()
         };
         page.status = watch::channel(Arc::new(status)).1;
-        let request = Request::post("/api/alert/acknowledge")
-            .header("content-type", "application/json")
-            .header("host", "192.168.1.9:8090")
-            .header("x-binnacle-request", "1")
-            .body(Body::from(format!(r#"{{"id":"{id}"}}"#)))
-            .unwrap();
-        let response = reached_from("127.0.0.1", &page)
-            .oneshot(request)
-            .await
-            .unwrap();
-        assert_eq!(response.status(), StatusCode::OK);
-        assert_eq!(*page.acknowledged.borrow(), Some(id));
+        for id in [of_headings, of_gnss] {
+            let request = Request::post("/api/alert/acknowledge")
+                .header("content-type", "application/json")
+                .header("host", "192.168.1.9:8090")
+                .header("x-binnacle-request", "1")
+                .body(Body::from(format!(r#"{{"id":"{id}"}}"#)))
+                .unwrap();
+            let response = reached_from("127.0.0.1", &page)
+                .oneshot(request)
+                .await
+                .unwrap();
+            assert_eq!(response.status(), StatusCode::OK);
+            assert_eq!(*page.acknowledged.borrow(), Some(id));
+        }
     }
 }

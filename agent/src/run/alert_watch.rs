@@ -1,9 +1,9 @@
 //! The alert, from settled windows to the spool.
 
 use super::Agent;
+use super::bridge_alerts::new_id;
 use crate::alert::ActiveCard;
 use binnacle_wire::alert::ShipAlert;
-use rand::RngExt;
 
 impl Agent {
     /// Passes newly settled windows to the alert monitor; a revision ends the current sample.
@@ -14,7 +14,6 @@ impl Agent {
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
         };
-        let new_id = || uuid::Builder::from_random_bytes(rand::rng().random()).into_uuid();
         let settled = self.acquisition.sampler.take_settled();
         let revisions = settled
             .iter()

@@ -15,12 +15,23 @@ impl Agent {
     /// Compares the corrected heading with gyro or satellite compass.
     pub(super) fn compare_headings(&mut self, now: Instant) {
         let comparison = self.comparison(now);
-        let new_id = || uuid::Builder::from_random_bytes(rand::rng().random()).into_uuid();
         if !self.difference_monitor.observe(comparison, now, new_id) {
             return;
         }
         if let Some(alarm) = self.difference_monitor.last() {
             tracing::warn!("{}", alarm.status().summary);
+        }
+    }
+
+    /// Raises or ends the alert of GNSS interference.
+    pub(super) fn watch_interference(&mut self) {
+        let found = self.acquisition.interference();
+        if !self.interference_monitor.observe(found, new_id) {
+            return;
+        }
+        match self.interference_monitor.status() {
+            Some(open) => tracing::warn!("{}", open.summary),
+            None => tracing::info!("the GNSS interference is over"),
         }
     }
 
@@ -66,6 +77,7 @@ impl Agent {
     pub(super) fn acknowledge_alert(&mut self, id: Uuid) {
         self.alert_monitor.acknowledge(id);
         self.difference_monitor.acknowledge(id);
+        self.interference_monitor.acknowledge(id);
     }
 
     /// Applies the commands among observations.
@@ -100,7 +112,12 @@ impl Agent {
         let conditions = AlertConditions {
             compass: self.alert_monitor.record().map(AlertCondition::from),
             difference: self.difference_monitor.last().map(AlertCondition::from),
+            interference: self.interference_monitor.last().map(AlertCondition::from),
         };
         sentences.update(conditions, self.acquisition.time(), now);
     }
+}
+
+pub(super) fn new_id() -> Uuid {
+    uuid::Builder::from_random_bytes(rand::rng().random()).into_uuid()
 }

@@ -39,7 +39,7 @@ impl Agent {
         status.raw_log = self.raw_log.status();
         status.sources = self.acquisition.sources(now);
         status.source_problems = self.acquisition.source_problems(now);
-        status.gnss_interference = self.acquisition.interference().map(Into::into);
+        status.gnss_interference = self.interference_monitor.status();
         status.clock_problem = self.acquisition.clock_problem();
         status.storage_problem = self.unstored.problem.as_ref().map(|problem| {
             let waiting = self.unstored.samples.len();

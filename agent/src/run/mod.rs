@@ -16,6 +16,7 @@ mod store_samples;
 use crate::acquisition::Acquisition;
 use crate::alert::{
     AlarmSentence, AlertMonitor, AlertRecord, DifferenceMonitor, HeadingDifference,
+    InterferenceMonitor,
 };
 use crate::config::{Config, UploadPlan};
 use crate::raw_log::{RawLog, Second};
@@ -79,6 +80,7 @@ struct Agent {
     exclusion: watch::Sender<Option<Exclusion>>,
     alert_monitor: AlertMonitor,
     difference_monitor: DifferenceMonitor,
+    interference_monitor: InterferenceMonitor,
     /// Alert as the spool has it.
     stored_alert: Option<AlertRecord>,
     /// Heading-difference alarm as the spool has it.
@@ -199,6 +201,7 @@ impl Agent {
     async fn run_every_second(&mut self) {
         self.update_alert();
         self.compare_headings(Instant::now());
+        self.watch_interference();
         self.collect();
         let seal = self.seal_due();
         let unstored = &self.unstored;

@@ -2,7 +2,7 @@
 
 use super::{Agent, CHANNEL_CAPACITY, ServiceManager, Unstored};
 use crate::acquisition::Acquisition;
-use crate::alert::{AlarmSentence, AlertMonitor, DifferenceMonitor};
+use crate::alert::{AlarmSentence, AlertMonitor, DifferenceMonitor, InterferenceMonitor};
 use crate::clock;
 use crate::config::Config;
 use crate::page::{self, PageState, PinGuard};
@@ -112,6 +112,7 @@ impl Agent {
                 Instant::now(),
             ),
             stored_difference,
+            interference_monitor: InterferenceMonitor::default(),
             alert_monitor: AlertMonitor::new(config.alert, stored_alert, judged_by),
             stored_alert,
             offered_reading: None,

@@ -6,7 +6,7 @@ mod text;
 
 pub(crate) use offline::offline_status;
 
-use crate::alert::{AlertStatus, HeadingDifferenceStatus};
+use crate::alert::{AlertStatus, HeadingDifferenceStatus, InterferenceStatus};
 use crate::corrected_heading::{CardRow, CorrectedHeading};
 use crate::raw_log::RawLogStatus;
 use crate::sampler::Exclusion;
@@ -17,11 +17,10 @@ use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 use binnacle_input::InputStatus;
-use binnacle_instruments::{Interference, SourceReport};
+use binnacle_instruments::SourceReport;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fmt;
 use tokio::time::Instant;
 
 /// Status of the agent, as the page shows it.
@@ -97,37 +96,6 @@ impl Status {
             age_s: age.map(|age| age.as_secs_f64()),
             ..self.clone()
         }
-    }
-}
-
-/// Interference with the receivers of satellites.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct InterferenceStatus {
-    /// Start, by GNSS time; none if that was not known.
-    pub(crate) since: Option<Timestamp>,
-    /// Last place that was trusted.
-    pub(crate) place: Position,
-}
-
-impl From<Interference> for InterferenceStatus {
-    fn from(of: Interference) -> InterferenceStatus {
-        InterferenceStatus {
-            since: of.since,
-            place: of.place,
-        }
-    }
-}
-
-impl fmt::Display for InterferenceStatus {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("GNSS interference")?;
-        if let Some(since) = self.since {
-            write!(f, " since {}", since.to_chrono().format("%d %b %H:%M UTC"))?;
-        }
-        f.write_str(
-            ": position, speed and satellite compass are not used; the heading is corrected for \
-             the reckoned place",
-        )
     }
 }
 

@@ -55,7 +55,7 @@ impl Status {
             }
         }
         if let Some(interference) = &self.gnss_interference {
-            writeln!(out, "GNSS       {interference}")?;
+            writeln!(out, "GNSS       {}", interference.summary)?;
         }
         for problem in &self.source_problems {
             writeln!(out, "SOURCES    {problem}")?;
@@ -232,18 +232,24 @@ impl InputReport {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::alert::InterferenceMonitor;
     use crate::config::Profile;
     use crate::corrected_heading::CorrectedHeading;
     use crate::sampler::Exclusion;
     use crate::spool::{BudgetAccount, SpoolStatus};
-    use crate::status::InterferenceStatus;
     use binnacle_compass::model::ReferenceGrade;
     use binnacle_compass::position::Position;
     use binnacle_compass::time::Timestamp;
-    use binnacle_instruments::SourceReport;
+    use binnacle_instruments::{Interference, SourceReport};
 
     #[test]
     fn the_text_says_what_is_wrong() {
+        let mut interference = InterferenceMonitor::default();
+        let met = Interference {
+            since: Timestamp::parse("2026-11-20T06:30:00Z").ok(),
+            place: Position::new(36.0, 15.0).unwrap(),
+        };
+        interference.observe(Some(met), || uuid::Uuid::from_u128(1));
         let status = Status {
             agent_version: "0.1.0".to_owned(),
             exclusion: Some(Exclusion::Berthed),
@@ -257,10 +263,7 @@ mod tests {
             }),
             clock_problem: Some("the receiver's time jumped".to_owned()),
             storage_problem: Some("samples cannot be stored".to_owned()),
-            gnss_interference: Some(InterferenceStatus {
-                since: Timestamp::parse("2026-11-20T06:30:00Z").ok(),
-                place: Position::new(36.0, 15.0).unwrap(),
-            }),
+            gnss_interference: interference.status(),
             source_problems: vec!["gyro: two sensors".to_owned()],
             sources: vec![SourceReport {
                 input: "bridge".to_owned(),

@@ -22,8 +22,8 @@ impl SentenceKind {
             SentenceKind::Ths | SentenceKind::Hdt => 19,
             SentenceKind::Pbinq => 40,
             SentenceKind::Alr => 82,
-            // A list and a heartbeat, and both sentences of both alerts.
-            SentenceKind::Alf => 82 + 24 + 4 * 82,
+            // A list and a heartbeat, and both sentences of the three alerts.
+            SentenceKind::Alf => 82 + 24 + 6 * 82,
         }
     }
 }

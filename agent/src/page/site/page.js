@@ -64,17 +64,18 @@ const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 function put(id, text) {
   if (byId(id).textContent !== text) byId(id).textContent = text;
 }
-function showAlarm(last, difference) {
+function showAlarm(last, difference, interference) {
   const isOpen = last != null && last.state === "open";
   put("alarm-over", last == null || isOpen ? "" : capital(last.says) + ".");
   byId("alarm-over").hidden = last == null || isOpen;
-  const all = [isOpen ? last : null, difference && difference.is_open ? difference : null].filter((one) => one != null);
+  const all = [isOpen ? last : null, difference && difference.is_open ? difference : null, interference].filter((one) => one != null);
   const alert = all.find((one) => !one.acknowledged) || all[0];
   const open = alert != null;
   alarmId = open ? alert.id : null;
   if (open) {
     const parted = alert.gyro_departure_deg == null ? "Compass and satellite compass have parted" : "Compass and gyro have parted";
-    put("alarm-title", alert === difference ? "Headings differ" : parted);
+    const title = alert === difference ? "Headings differ" : alert === interference ? "GNSS interference" : parted;
+    put("alarm-title", title);
     put("alarm-says", capital(alert.says) + ".");
     put("alarm-advice", alert.advice);
     put("alarm-seen", alert.acknowledged ? "Acknowledged" : "Acknowledge");
@@ -121,7 +122,7 @@ function show(status) {
   const name = [status.vessel_name, status.compass_name].filter(Boolean).join(" · ");
   shipTime = status.ship_time;
   byId("title").textContent = name || "Compass (not enrolled)";
-  showAlarm(status.alert, status.heading_difference);
+  showAlarm(status.alert, status.heading_difference, status.gnss_interference);
   const heading = status.heading;
   byId("compass").textContent = degrees(heading.compass_deg);
   byId("magnetic").textContent = degrees(heading.magnetic_deg);
@@ -143,7 +144,7 @@ function show(status) {
   byId("sources").replaceChildren(...status.sources.map((source) => row([sourceName(source),
     source.rate_hz == null ? "–" : source.rate_hz.toFixed(1),
     source.last + (source.age_s == null ? " (not yet known to be new)" : source.age_s >= 1 ? " (" + source.age_s.toFixed(0) + " s late)" : ""),
-    source.own_output ? "own output" : source.serves.join(", ") ||
+    source.own_output ? "own output" : words(source.serves.join(", ")) ||
       (source.stands_by.length > 0 ? "not used as " + source.stands_by.join(", ") : "–")])));
   byId("windows").replaceChildren(...Object.entries(status.windows).map(([outcome, count]) =>
     row([words(outcome), count])));
