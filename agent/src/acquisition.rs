@@ -7,7 +7,8 @@ use binnacle_compass::time::Timestamp;
 use binnacle_instruments::config::{RolesConfig, SilenceConfig};
 use binnacle_instruments::{
     ClockCheckpoint, GnssGuard, HeardSources, Independence, Interference, OwnHeadings, OwnOutput,
-    Readings, ReckonedPlace, Roles, SentHeading, Signal, SourceReport, StatedClocks, Trust,
+    PlaceCheckpoint, Readings, ReckonedPlace, Roles, SentHeading, Signal, SourceReport,
+    StatedClocks, Trust,
 };
 use binnacle_observation::{Observation, Reading, is_recorded_time};
 use binnacle_wire::messages::Settings;
@@ -175,6 +176,16 @@ impl Acquisition {
                 self.readings.apply(signal, measured);
             }
         }
+    }
+
+    /// Returns the ship's place, to be saved at a computer's time.
+    pub(crate) fn place_checkpoint(&self, computer: Timestamp) -> Option<PlaceCheckpoint> {
+        self.guard.checkpoint(computer)
+    }
+
+    /// Restores the place saved before the restart, given the computer's time now.
+    pub(crate) fn restore_place_checkpoint(&mut self, saved: PlaceCheckpoint, computer: Timestamp) {
+        self.guard.restore(saved, computer);
     }
 
     /// Records the corrected heading, by which the ship is reckoned where there is no gyro.

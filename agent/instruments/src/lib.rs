@@ -17,7 +17,7 @@ mod two_sensors;
 
 pub use clock_checkpoint::ClockCheckpoint;
 pub use gnss_clock::Trust;
-pub use gnss_guard::{GnssGuard, Interference, ReckonedPlace, offset};
+pub use gnss_guard::{GnssGuard, Interference, PlaceCheckpoint, ReckonedPlace, offset};
 pub use heard::{HeardSource, HeardSources, SourceReport};
 pub use independence::Independence;
 pub use own_output::{AGENT_TALKER, OwnHeadings, OwnOutput, SentHeading};

@@ -23,16 +23,16 @@ impl Agent {
         }
     }
 
-    /// Raises or ends the alert of GNSS interference.
-    pub(super) fn watch_interference(&mut self) {
+    /// Raises or ends the alert of GNSS interference. Returns whether it did.
+    pub(super) fn watch_interference(&mut self) -> bool {
         let found = self.acquisition.interference();
-        if !self.interference_monitor.observe(found, new_id) {
-            return;
-        }
+        let has_changed = self.interference_monitor.observe(found, new_id);
         match self.interference_monitor.status() {
-            Some(open) => tracing::warn!("{}", open.summary),
-            None => tracing::info!("the GNSS interference is over"),
+            Some(open) if has_changed => tracing::warn!("{}", open.summary),
+            None if has_changed => tracing::info!("the GNSS interference is over"),
+            _ => {}
         }
+        has_changed
     }
 
     /// Stores the heading-difference alarm when its state has changed.

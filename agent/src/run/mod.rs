@@ -163,7 +163,7 @@ impl Agent {
         self.collect();
         self.store(Seal::Full).await;
         self.save_difference().await;
-        self.save_clock_checkpoint().await;
+        self.save_checkpoints().await;
         self.raw_log.flush(Instant::now());
         if let Err(error) = self.uplink.await {
             tracing::error!(%error, "the uplink failed");
@@ -201,7 +201,9 @@ impl Agent {
     async fn run_every_second(&mut self) {
         self.update_alert();
         self.compare_headings(Instant::now());
-        self.watch_interference();
+        if self.watch_interference() {
+            self.save_checkpoints().await;
+        }
         self.collect();
         let seal = self.seal_due();
         let unstored = &self.unstored;

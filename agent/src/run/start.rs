@@ -46,7 +46,7 @@ impl Agent {
             devices: shared_outputs.own_devices(),
             labels: shared_outputs.own_labels(),
         });
-        set_known_time(&mut acquisition, &config, &spool, last_contact).await?;
+        set_known_time_and_place(&mut acquisition, &config, &spool, last_contact).await?;
         let reports = spool.reports().await?;
         let unstored = Unstored {
             pending: spool.pending().await?,
@@ -147,9 +147,9 @@ fn start_shared_outputs(
     SharedOutputs::start(&config.output, owner, &config.data_dir, shutdown)
 }
 
-/// Tells the acquisition what is known of the time, unless a recording is played: the computer may
+/// Tells the acquisition what is known of time and place, unless a recording is played: the computer may
 /// have lost its own with its power.
-async fn set_known_time(
+async fn set_known_time_and_place(
     acquisition: &mut Acquisition,
     config: &Config,
     spool: &Spool,
@@ -163,6 +163,9 @@ async fn set_known_time(
     acquisition.set_reference_time(known, Instant::now());
     if let Some(before) = spool.clock_checkpoint().await? {
         acquisition.restore_clock_checkpoint(before);
+    }
+    if let Some(saved) = spool.place_checkpoint().await? {
+        acquisition.restore_place_checkpoint(saved, clock::now());
     }
     Ok(())
 }

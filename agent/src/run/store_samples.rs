@@ -75,7 +75,7 @@ impl Agent {
                     self.limit_spool().await;
                 }
                 if sealed > 0 {
-                    self.save_clock_checkpoint().await;
+                    self.save_checkpoints().await;
                     self.uplink_handle.sealed.notify_one();
                 }
             }
@@ -96,19 +96,23 @@ impl Agent {
         }
     }
 
-    /// Saves both clocks for the first time stamp after a restart.
-    pub(super) async fn save_clock_checkpoint(&self) {
-        let Some(ship) = self.acquisition.reliable_time() else {
-            return;
-        };
-        let computer = clock::now();
-        if let Err(error) = self
-            .spool
-            .save_clock_checkpoint(&ClockCheckpoint { ship, computer })
-            .await
-        {
-            tracing::error!(%error, "the clock checkpoint cannot be stored");
+    /// Saves both clocks and the place for the first fix after a restart.
+    pub(super) async fn save_checkpoints(&self) {
+        if let Err(error) = self.store_checkpoints().await {
+            tracing::error!(%error, "clocks and place cannot be stored");
         }
+    }
+
+    async fn store_checkpoints(&self) -> sqlx::Result<()> {
+        let computer = clock::now();
+        if let Some(ship) = self.acquisition.reliable_time() {
+            let clocks = ClockCheckpoint { ship, computer };
+            self.spool.save_clock_checkpoint(&clocks).await?;
+        }
+        if let Some(place) = self.acquisition.place_checkpoint(computer) {
+            self.spool.save_place_checkpoint(&place).await?;
+        }
+        Ok(())
     }
 
     /// Merges and thins batches to the limits of disk, messages and budget.

@@ -13,3 +13,4 @@ pub(super) const HEADING_DIFFERENCE: &str = "heading_difference";
 pub(super) const THINNED: &str = "thinned";
 pub(super) const ACCOUNT: &str = "account";
 pub(super) const CLOCK_CHECKPOINT: &str = "clocks";
+pub(super) const PLACE_CHECKPOINT: &str = "place";

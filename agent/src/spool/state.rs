@@ -3,13 +3,13 @@
 use super::account::BudgetAccount;
 use super::database::{Spool, forget, put, text};
 use super::keys::{
-    ACCOUNT, ALERT, CLOCK_CHECKPOINT, EXCLUSION, HEADING_DIFFERENCE, LAST_CONTACT, MODEL, SETTINGS,
-    WITHDRAWN,
+    ACCOUNT, ALERT, CLOCK_CHECKPOINT, EXCLUSION, HEADING_DIFFERENCE, LAST_CONTACT, MODEL,
+    PLACE_CHECKPOINT, SETTINGS, WITHDRAWN,
 };
 use crate::alert::{AlertRecord, HeadingDifference};
 use crate::sampler::Exclusion;
 use binnacle_compass::time::Timestamp;
-use binnacle_instruments::ClockCheckpoint;
+use binnacle_instruments::{ClockCheckpoint, PlaceCheckpoint};
 use binnacle_wire::messages::{CardWithdrawn, Downlink, ModelDownlink, Settings};
 use sqlx::SqliteConnection;
 
@@ -87,6 +87,18 @@ impl Spool {
     ) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, CLOCK_CHECKPOINT, clock_checkpoint).await?;
+        tx.commit().await
+    }
+
+    /// Returns the last saved place of the ship.
+    pub(crate) async fn place_checkpoint(&self) -> sqlx::Result<Option<PlaceCheckpoint>> {
+        self.get(PLACE_CHECKPOINT).await
+    }
+
+    /// Saves the place of the ship.
+    pub(crate) async fn save_place_checkpoint(&self, place: &PlaceCheckpoint) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        put(&mut tx, PLACE_CHECKPOINT, place).await?;
         tx.commit().await
     }
 

@@ -14,10 +14,14 @@
 //! - A receiver is trusted again when its fixes have agreed with the reckoning for minutes. A track
 //!   elsewhere that moves as the ship does becomes a trusted one when it has lasted longer than
 //!   what speaks against it, or a day: the first fix may have been the false one.
+//! - The first fix after a restart is held against the place before it, by the time passed since,
+//!   and not before the ship's time is known.
 
+mod place_checkpoint;
 mod receiver;
 mod reckoning;
 
+pub use place_checkpoint::PlaceCheckpoint;
 pub use reckoning::{ReckonedPlace, offset};
 
 use super::gnss_clock::Trust;
@@ -55,12 +59,23 @@ pub struct GnssGuard {
     clock: GuardClock,
     receivers: Vec<Receiver>,
     interference: Option<Interference>,
+    /// Reckoning from before a restart, until a receiver is used.
+    before: Option<Before>,
     gyro: Option<Dated>,
     corrected: Option<Dated>,
     water_speed: Option<Dated>,
     ground_speed: Option<Dated>,
     /// Time of the latest fix that was used.
     heard_fix_s: f64,
+}
+
+/// Reckoning from before a restart.
+#[derive(Clone, Copy, Debug)]
+struct Before {
+    reckoning: Reckoning,
+    /// Longest time for which a receiver had been trusted, seconds.
+    trusted_s: f64,
+    is_time_known: bool,
 }
 
 /// Number and its time by the guard's clock, seconds.
@@ -107,6 +122,7 @@ impl GnssGuard {
             clock: GuardClock::default(),
             receivers: Vec::new(),
             interference: None,
+            before: None,
             gyro: None,
             corrected: None,
             water_speed: None,
@@ -115,8 +131,48 @@ impl GnssGuard {
         }
     }
 
+    /// Returns the ship's place, to be saved at a computer's time; `None` if it is not known.
+    pub fn checkpoint(&self, computer: Timestamp) -> Option<PlaceCheckpoint> {
+        let place = self.place()?;
+        let trusted_s = self.receivers.iter().map(|receiver| receiver.trusted_s);
+        let before_s = self.before.map_or(0.0, |before| before.trusted_s);
+        Some(PlaceCheckpoint {
+            position: place.position,
+            radius_nm: place.radius_nm,
+            trusted_s: trusted_s.fold(before_s, f64::max),
+            ship: self.clock.ship,
+            computer,
+        })
+    }
+
+    /// Goes on from the place before a restart, given the computer's time now. A computer that has
+    /// lost its time since does not know how long ago that was.
+    pub fn restore(&mut self, saved: PlaceCheckpoint, computer: Timestamp) {
+        let passed_s = computer.seconds_since(saved.computer);
+        if passed_s < 0.0 {
+            return;
+        }
+        let mut reckoning = Reckoning::from_place(saved.position, saved.radius_nm);
+        reckoning.advance(passed_s, Motion::default());
+        // The ship's time shows whether it was longer.
+        (self.clock.ship, self.clock.since_ship_s) = (saved.ship, passed_s);
+        self.before = Some(Before {
+            reckoning,
+            trusted_s: saved.trusted_s,
+            is_time_known: saved.ship.is_none(),
+        });
+    }
+
     /// Advances to a moment by the ship's time and the computer's.
     pub fn advance(&mut self, ship: Option<Timestamp>, now: Instant) {
+        let before = self.before.as_mut();
+        if let Some(before) = before.filter(|before| !before.is_time_known) {
+            if ship.is_none() {
+                self.clock.advance(self.clock.ship, now);
+                return;
+            }
+            before.is_time_known = true;
+        }
         let passed_s = self.clock.advance(ship, now);
         if passed_s <= 0.0 {
             return;
@@ -124,6 +180,9 @@ impl GnssGuard {
         let motion = self.motion();
         for receiver in &mut self.receivers {
             receiver.advance(passed_s, motion);
+        }
+        if let Some(before) = &mut self.before {
+            before.reckoning.advance(passed_s, motion);
         }
     }
 
@@ -206,6 +265,9 @@ impl GnssGuard {
     }
 
     fn fix(&mut self, fix: Position, of: GnssSource<'_>) -> [Option<Signal>; 2] {
+        if self.before.is_some_and(|before| !before.is_time_known) {
+            return [None; 2];
+        }
         let Some(index) = self.hear(fix, of) else {
             return [None; 2];
         };
@@ -219,6 +281,7 @@ impl GnssGuard {
         let used = self.used();
         if used == Some(index) {
             self.interference = None;
+            self.before = None;
             self.heard_fix_s = self.clock.seconds;
             return [Some(Signal::Position(fix)), None];
         }
@@ -250,7 +313,10 @@ impl GnssGuard {
             }
             let is_possible = self.ship().is_none_or(|ship| ship.allows(fix));
             let is_trusted = is_possible && self.interference.is_none();
-            self.receivers.push(Receiver::new(of, now_s, is_trusted));
+            let before_s = self.before.map_or(0.0, |before| before.trusted_s);
+            let trusted_s = if is_trusted { 0.0 } else { before_s };
+            self.receivers
+                .push(Receiver::new(of, now_s, is_trusted, trusted_s));
             return Some(self.receivers.len() - 1);
         };
         let is_heard = self.is_heard(&self.receivers[index]);
@@ -315,7 +381,8 @@ impl GnssGuard {
             let reckonings = self
                 .receivers
                 .iter()
-                .filter_map(|one| one.from_last.as_ref());
+                .filter_map(|one| one.from_last.as_ref())
+                .chain(self.before.as_ref().map(|before| &before.reckoning));
             let radius_nm = |reckoning: &Reckoning| reckoning.place().radius_nm;
             reckonings.min_by(|one, other| radius_nm(one).total_cmp(&radius_nm(other)))
         })

@@ -51,7 +51,12 @@ pub(super) struct Evidence {
 
 impl Receiver {
     /// Creates a receiver by its first fix, which is trusted or not.
-    pub(super) fn new(of: GnssSource<'_>, now_s: f64, is_trusted: bool) -> Receiver {
+    pub(super) fn new(
+        of: GnssSource<'_>,
+        now_s: f64,
+        is_trusted: bool,
+        trusted_s: f64,
+    ) -> Receiver {
         Receiver {
             source: of.source.clone(),
             names_talker: of.names_talker,
@@ -60,7 +65,7 @@ impl Receiver {
             is_trusted,
             from_last: None,
             from_earlier: [None; 2],
-            trusted_s: 0.0,
+            trusted_s,
             elsewhere: None,
         }
     }

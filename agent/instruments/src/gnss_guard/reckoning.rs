@@ -114,10 +114,15 @@ pub(super) struct Reckoning {
 impl Reckoning {
     /// Begins at a fix.
     pub(super) fn from_fix(fix: Position) -> Reckoning {
+        Reckoning::from_place(fix, FIX_ERROR_NM)
+    }
+
+    /// Begins at a place that is known to some miles.
+    pub(super) fn from_place(place: Position, radius_nm: f64) -> Reckoning {
         Reckoning {
-            fix,
+            fix: place,
             runs: [Run::default(); 2],
-            stray_nm: FIX_ERROR_NM,
+            stray_nm: radius_nm,
             seconds: 0.0,
         }
     }

@@ -308,6 +308,57 @@ fn a_receiver_that_is_false_when_it_is_first_heard_changes_nothing() {
     assert_eq!(ship.guard.apply(heading, None), [Some(heading), None]);
 }
 
+impl Ship {
+    /// Restarts after some seconds in which she sails on. The computer knows of `known_s` of them.
+    fn restart(&mut self, seconds: u64, known_s: f64) {
+        let noon = Timestamp::parse("2026-11-21T12:00:00Z").unwrap();
+        let saved = self.guard.checkpoint(noon).unwrap();
+        self.guard = GnssGuard::new(15.0);
+        self.guard.restore(saved, noon.plus_seconds(known_s));
+        self.seconds += seconds;
+        let run_nm = self.speed_kn / 3600.0 * seconds as f64;
+        let (sin, cos) = self.heading_deg.to_radians().sin_cos();
+        self.true_place = offset(self.true_place, run_nm * cos, run_nm * sin);
+    }
+}
+
+#[test]
+fn a_false_fix_is_false_after_a_restart_too() {
+    let elsewhere = |second: u64, place| {
+        let angle = second as f64 / 60.0;
+        offset(place, -200.0 + angle.cos(), angle.sin())
+    };
+    for is_spoofed_before in [true, false] {
+        let mut ship = Ship::new();
+        ship.sail(900, |_, place| Some(place));
+        if is_spoofed_before {
+            ship.sail(60, |second, place| Some(elsewhere(second, place)));
+            assert!(ship.is_disturbed());
+        }
+        ship.restart(120, 120.0);
+        ship.sail(1_800, |second, place| Some(elsewhere(second, place)));
+        assert!(ship.is_disturbed());
+        let (error_nm, place) = (ship.used_error_nm(), ship.guard.place().unwrap());
+        assert!(error_nm < place.radius_nm, "{error_nm} {place:?}");
+        ship.sail(700, |_, place| Some(place));
+        assert!(!ship.is_disturbed());
+    }
+}
+
+#[test]
+fn where_she_sailed_meanwhile_the_fix_is_trusted_whatever_the_computer_knows() {
+    for known_s in [0.0, 86_400.0, -86_400.0] {
+        let mut ship = Ship::new();
+        ship.sail(900, |_, place| Some(place));
+        ship.restart(86_400, known_s);
+        ship.sail(2, |_, place| Some(place));
+        assert!(
+            !ship.is_disturbed() && ship.used_error_nm() < 0.1,
+            "{known_s}"
+        );
+    }
+}
+
 fn sentence(talker: [u8; 2], sentence: [u8; 3]) -> Source {
     Source::of_sentence("bridge".into(), talker, sentence)
 }
