@@ -19,9 +19,9 @@ const SAME_DEG: f64 = 1e-6;
 
 /// Asks about unlikely values.
 pub(super) fn check(readings: &Readings, result: &AzimuthResult) -> Result<(), AzimuthError> {
-    if let Some(indicated) = repeated_true_bearing(readings, result) {
+    if let Some((instrument, indicated)) = repeated_true_bearing(readings, result) {
         return Err(AzimuthError::question(format!(
-            "the true bearing is the compass's own, {indicated:05.1}°, to the last digit"
+            "the true bearing is the {instrument}'s own, {indicated:05.1}°, to the last digit"
         )));
     }
     let deviation = result.deviation_deg;
@@ -42,17 +42,29 @@ pub(super) fn check(readings: &Readings, result: &AzimuthResult) -> Result<(), A
     check_relative_bearings(readings)
 }
 
-/// Returns the compass's value when it is also the typed true one.
-fn repeated_true_bearing(readings: &Readings, result: &AzimuthResult) -> Option<f64> {
-    let indicated_deg = match (&readings.target, readings.bearing) {
-        (Target::SunAzimuth | Target::SunAmplitude { .. }, _) | (_, Bearing::Gyro(..)) => {
-            return None;
-        }
-        (_, Bearing::Compass(compass) | Bearing::Both(compass, _)) => compass.degrees(),
-        (_, Bearing::Ahead) => readings.compass_heading.degrees(),
+/// Returns the instrument whose value is also the typed true one, and the value.
+fn repeated_true_bearing(
+    readings: &Readings,
+    result: &AzimuthResult,
+) -> Option<(&'static str, f64)> {
+    if let Target::SunAzimuth | Target::SunAmplitude { .. } = readings.target {
+        return None;
+    }
+    let (by_compass_deg, by_gyro_deg) = match readings.bearing {
+        Bearing::Compass(compass) => (Some(compass.degrees()), None),
+        Bearing::Gyro(gyro, _) => (None, Some(gyro.degrees())),
+        Bearing::Both(compass, gyro) => (Some(compass.degrees()), Some(gyro.degrees())),
+        // A gyro alongside may well show the quay's direction.
+        Bearing::Ahead => (Some(readings.compass_heading.degrees()), None),
     };
-    let apart_deg = wrap_180(result.true_bearing_deg.degrees() - indicated_deg);
-    (apart_deg.abs() < SAME_DEG).then_some(indicated_deg)
+    let indicated = [("compass", by_compass_deg), ("gyro", by_gyro_deg)];
+    let mut indicated = indicated
+        .into_iter()
+        .filter_map(|(instrument, degrees)| Some((instrument, degrees?)));
+    indicated.find(|(_, indicated_deg)| {
+        let apart_deg = wrap_180(result.true_bearing_deg.degrees() - indicated_deg);
+        apart_deg.abs() < SAME_DEG
+    })
 }
 
 /// Compares the angle from the bow by compass with the one by gyro.

@@ -398,7 +398,21 @@ fn an_unlikely_observation_is_questioned_and_accepted_once_confirmed() {
         (
             vega(),
             json!({ "true_bearing_deg": 298.0 }),
-            "to the last digit",
+            "the compass's own, 298.0°, to the last digit",
+        ),
+        // The gyro's, beside that of the compass and alone.
+        (
+            vega(),
+            json!({ "gyro_bearing_deg": 301.3, "true_bearing_deg": 301.3 }),
+            "the gyro's own, 301.3°, to the last digit",
+        ),
+        (
+            vega(),
+            json!({
+                "compass_bearing_deg": null, "gyro_bearing_deg": 301.3, "gyro_heading_deg": 95.0,
+                "true_bearing_deg": 301.3,
+            }),
+            "the gyro's own, 301.3°, to the last digit",
         ),
         (
             quay(),
