@@ -55,6 +55,19 @@ const EVERY_SECOND: Passage = Passage {
     yaw_deg: 2.0,
 };
 
+const PASSAGE: Passage = Passage {
+    courses: 120,
+    rows_each: 12,
+    seconds: 600.0,
+    yaw_deg: 1.0,
+};
+const LONG_COURSES: Passage = Passage {
+    courses: 60,
+    rows_each: 600,
+    seconds: 1.0,
+    yaw_deg: 2.0,
+};
+
 /// Compass of a ship.
 struct Instruments {
     compass_digit: f64,
@@ -68,8 +81,9 @@ struct Moment<'a> {
     variation_deg: f64,
     raw_deg: f64,
     shown_deg: f64,
-    /// Compass as shown a second ago.
-    shown_before_deg: f64,
+    /// Compass as shown so far, the latest last, and the number of rows on this course.
+    shown: &'a [f64],
+    on_course: usize,
     rng: &'a mut ChaCha8Rng,
 }
 
@@ -83,30 +97,33 @@ fn pairs(
     let start = Timestamp::parse("2026-03-01T00:00:00Z").unwrap();
     let mut pairs = Vec::new();
     let mut row = 0.0;
-    let mut before: Option<f64> = None;
+    let mut shown = Vec::new();
     for _ in 0..passage.courses {
         let course = 360.0 * rng.random::<f64>();
-        for _ in 0..passage.rows_each {
+        for on_course in 1..=passage.rows_each {
             // A yaw of half a minute.
             let phase = TAU * row * passage.seconds / 30.0 + 0.7 * row;
             let true_deg = course + passage.yaw_deg * phase.sin() * (0.5 + rng.random::<f64>());
-            let variation_deg = -3.0 + 6.0 * (row / 400.0);
+            // Ten minutes since the start.
+            let tens = row * passage.seconds / 600.0;
+            let variation_deg = -3.0 + 6.0 * (tens / 400.0);
             let magnetic: f64 = true_deg - variation_deg;
             let deviation = instruments.deviation_deg * (magnetic + 30.0).to_radians().sin();
             let raw_deg = magnetic - deviation + instruments.compass_noise_deg * gauss(&mut rng);
             let shown_deg = rounded(raw_deg, instruments.compass_digit);
+            shown.push(shown_deg);
             let reference_deg = reference(&mut Moment {
                 true_deg,
                 variation_deg,
                 raw_deg,
                 shown_deg,
-                shown_before_deg: before.unwrap_or(shown_deg),
+                shown: &shown,
+                on_course: on_course as usize,
                 rng: &mut rng,
             });
-            before = Some(shown_deg);
             pairs.push(HeadingPair {
                 time: Some(start.plus_seconds(row * passage.seconds)),
-                position: Some(Position::new(20.0 + row / 100.0, -30.0).unwrap()),
+                position: Some(Position::new(20.0 + tens / 100.0, -30.0).unwrap()),
                 compass: CompassHeading::new(shown_deg).unwrap(),
                 reference: TrueHeading::new(reference_deg).unwrap(),
                 variation: Variation::new(variation_deg).unwrap(),
@@ -200,12 +217,17 @@ fn a_copy_of_the_compass_is_refused_in_any_digits() {
                 let own = instruments(digit);
                 let with_variation = pairs(seed, passage, &own, |m| m.shown_deg + m.variation_deg);
                 assert_refused("variation added", &with_variation);
-                let rounded_again = pairs(seed, longer, &own, |m| {
-                    rounded(m.shown_deg + m.variation_deg, digit)
-                });
-                assert_refused("rounded again", &rounded_again);
-                let set_by_hand = pairs(seed, passage, &own, |m| m.shown_deg - 2.0);
-                assert_refused("one variation for all", &set_by_hand);
+                // In whole degrees only the change of the variation shows it.
+                if digit < 1.0 || passage.seconds > 1.0 {
+                    let rounded_again = pairs(seed, longer, &own, |m| {
+                        rounded(m.shown_deg + m.variation_deg, digit)
+                    });
+                    assert_refused("rounded again", &rounded_again);
+                }
+                if digit < 1.0 {
+                    let set_by_hand = pairs(seed, passage, &own, |m| m.shown_deg - 2.0);
+                    assert_refused("one variation for all", &set_by_hand);
+                }
             }
             let tenths = instruments(0.1);
             let each = pairs(seed, passage, &tenths, |m| {
@@ -221,12 +243,87 @@ fn a_copy_of_the_compass_is_refused_in_any_digits() {
     }
 }
 
+/// Returns the compass as it was shown so many rows ago on this course.
+fn late(m: &Moment<'_>, rows: usize) -> f64 {
+    m.shown[m.shown.len() - (1 + rows).min(m.on_course)]
+}
+
+/// Returns the mean of so many last readings on this course.
+fn smoothed(m: &Moment<'_>, rows: usize) -> f64 {
+    let last = &m.shown[m.shown.len() - rows.min(m.on_course)..];
+    last.iter().sum::<f64>() / last.len() as f64
+}
+
+#[test]
+fn a_copy_with_noise_of_its_own_is_refused_by_the_means_of_courses() {
+    for seed in 0..20 {
+        for digit in [0.0, 0.1] {
+            for noise_deg in [0.05, 0.1] {
+                let noisy = pairs(seed, &PASSAGE, &instruments(digit), |m| {
+                    rounded(
+                        m.shown_deg + m.variation_deg + noise_deg * gauss(m.rng),
+                        digit,
+                    )
+                });
+                assert_refused("noise added", &noisy);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_copy_that_is_late_or_smoothed_is_refused_by_the_means_of_courses() {
+    for seed in 0..4 {
+        for digit in [0.1, 1.0] {
+            let own = instruments(digit);
+            for rows in [2, 5] {
+                let lagging = pairs(seed, &LONG_COURSES, &own, |m| {
+                    late(m, rows) + m.variation_deg
+                });
+                assert_refused("late", &lagging);
+            }
+            let calm = pairs(seed, &LONG_COURSES, &own, |m| {
+                smoothed(m, 11) + m.variation_deg
+            });
+            assert_refused("smoothed", &calm);
+        }
+    }
+}
+
+#[test]
+fn a_well_adjusted_compass_on_a_long_passage_passes() {
+    for seed in 0..20 {
+        for digit in [0.0, 0.1, 1.0] {
+            let adjusted = pairs(seed, &PASSAGE, &instruments(digit), |m| {
+                rounded(m.true_deg + 0.15 * gauss(m.rng), digit)
+            });
+            let checked = check_independence(&adjusted);
+            assert!(checked.is_ok(), "{seed} {digit}: {checked:?}");
+        }
+    }
+}
+
+/// Swing on set headings: both instruments show the same whole degrees, and nothing between.
+#[test]
+fn a_swing_on_set_headings_in_whole_degrees_passes() {
+    let own = instruments(1.0);
+    let mut swing = pairs(3, &PASSAGE, &own, |m| m.true_deg);
+    for (row, pair) in swing.iter_mut().enumerate() {
+        let heading_deg = 5.0 * (row / 12) as f64;
+        pair.compass = CompassHeading::new(heading_deg).unwrap();
+        pair.reference = TrueHeading::new(heading_deg).unwrap();
+        pair.variation = Variation::new(0.0).unwrap();
+    }
+    let thirty: Vec<HeadingPair> = swing.into_iter().step_by(12).take(36).collect();
+    assert_eq!(check_independence(&thirty), Ok(()));
+}
+
 #[test]
 fn a_copy_that_lags_by_a_second_is_refused() {
     for seed in 0..20 {
         for digit in [0.1, 1.0] {
             let lagging = pairs(seed, &EVERY_SECOND, &instruments(digit), |m| {
-                m.shown_before_deg + m.variation_deg
+                m.shown[m.shown.len().saturating_sub(2)] + m.variation_deg
             });
             assert_refused("lagging", &lagging);
         }
@@ -237,7 +334,7 @@ fn a_copy_that_lags_by_a_second_is_refused() {
 fn few_pairs_or_few_headings_are_not_refused() {
     let own = instruments(0.1);
     let few = Passage {
-        courses: 30,
+        courses: 10,
         ..SWING
     };
     let copy = |m: &mut Moment<'_>| m.shown_deg + m.variation_deg;

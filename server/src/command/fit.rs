@@ -4,7 +4,7 @@ use super::{BadInput, input, json, print_result, table};
 use crate::cli::{Fit, Method};
 use binnacle_analysis::advice::{Question, advise};
 use binnacle_analysis::fit::{
-    Observation, RobustFit, RobustOptions, check_readings_independence, fit_ols, fit_paper,
+    Observation, RobustFit, RobustOptions, check_references, fit_ols, fit_paper,
     fit_robust, observe_readings, readings_from_csv,
 };
 use binnacle_compass::coverage::coverage;
@@ -42,7 +42,7 @@ fn find(arguments: &Fit) -> Result<FitResult, BadInput> {
     let readings = readings_from_csv(&table.rows, arguments.gyro_speed_error.into())
         .map_err(|error| table.error_at(&error))?;
     let refused = |error: FitError| BadInput(format!("{}: {error}", arguments.file.display()));
-    check_readings_independence(&readings).map_err(refused)?;
+    check_references(&readings).map_err(refused)?;
     let referred = observe_readings(&readings, REFERENCE_CONSTANT_SD_DEG).map_err(refused)?;
     let observations: Vec<Observation> = referred.observations.into_iter().flatten().collect();
     let mut sail_next = None;

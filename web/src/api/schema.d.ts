@@ -4492,6 +4492,16 @@ export interface components {
              * @description Weakest horizontal field, nT.
              */
             h_nt: number;
+        } | {
+            /** @enum {string} */
+            caution: "variation_unproven";
+            /** @description Mistake of the reference that would explain it. */
+            mistake: components["schemas"]["VariationMistake"];
+            /**
+             * Format: double
+             * @description Constant of the deviation as the reference stands, degrees, east positive.
+             */
+            zero_deg: number;
         };
         /** @description Change of the deviation, real or apparent. */
         Change: {
@@ -8215,6 +8225,21 @@ export interface components {
             scatter_deg: number;
         } | {
             /**
+             * Format: double
+             * @description Such a standard deviation where the mistake is undone, degrees.
+             */
+            explained_deg: number;
+            /** @description Mistake that explains the samples. */
+            mistake: components["schemas"]["VariationMistake"];
+            /** @enum {string} */
+            reason: "variation_mistaken";
+            /**
+             * Format: double
+             * @description Robust standard deviation about the best ship as the reference stands, degrees.
+             */
+            residual_deg: number;
+        } | {
+            /**
              * Format: int64
              * @description Number of samples with a reference.
              */
@@ -9348,6 +9373,11 @@ export interface components {
          * @enum {string}
          */
         UserState: "invited" | "active" | "disabled";
+        /**
+         * @description Mistake in a reference heading about the variation.
+         * @enum {string}
+         */
+        VariationMistake: "missing" | "wrong_sign" | "doubled";
         /** @description A vessel, with the state of its compass. */
         Vessel: {
             /** @description Its call sign. */

@@ -94,6 +94,15 @@ export function refusalWords(refusal: Refusal): RefusalWords | null {
         ),
         todo: t().referenceIsCompassTodo,
       };
+    case 'variation_mistaken':
+      return {
+        missing: t().variationMistaken(
+          t().variationMistakes[refusal.mistake],
+          degrees(refusal.residual_deg),
+          degrees(refusal.explained_deg),
+        ),
+        todo: t().variationMistakenTodo,
+      };
     case 'few_samples_used':
       return {
         missing: t().fewSamplesUsed(count(refusal.used), count(refusal.found)),

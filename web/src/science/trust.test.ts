@@ -164,6 +164,7 @@ describe('in words', () => {
       { caution: 'large_residuals', residual_deg: 2.43 },
       { caution: 'long_gap', days: 3_652.6, last: '2025-03-20T23:50:00Z' },
       { caution: 'weak_field', h_nt: 4_130 },
+      { caution: 'variation_unproven', mistake: 'missing', zero_deg: -13.9 },
       { caution: 'moonlight' } as unknown as Caution,
     ];
     const words = cautions.map(cautionWords);
@@ -171,6 +172,7 @@ describe('in words', () => {
     expect(words[3]).toContain('differ by 2.4°');
     expect(plain(words[4])).toContain('none for 3\u202f653 days');
     expect(words[4]).toContain('2025');
+    expect(words[6]).toContain('off by 13.9°');
   });
 
   test('references differ by an angle with its side, and what was dropped is counted', () => {
@@ -238,6 +240,10 @@ describe('in words', () => {
         ...{ readings: 1_440, found: 3, needed: 12 },
         ...{ too_slow: 1_400, turning: 37, least_sog_kn: 4 },
       },
+      {
+        reason: 'variation_mistaken',
+        ...{ mistake: 'wrong_sign', residual_deg: 5.92, explained_deg: 0.71 },
+      },
     ];
     const found = refusals.map((refusal) => refusalWords(refusal));
     expect(new Set(found.map((words) => words?.todo)).size).toBe(refusals.length);
@@ -253,6 +259,7 @@ describe('in words', () => {
     expect(found[12]?.missing).toContain('Only 12 of 400 samples');
     expect(found[13]?.missing).toContain('misses its own samples by 9.7°');
     expect(plain(found[14]?.missing)).toContain('below 4 knots, 37 in a turn');
+    expect(found[15]?.missing).toContain('with the wrong sign');
     expect(refusalWords({ reason: 'moonlight' } as unknown as Refusal)).toBeNull();
   });
 });

@@ -100,6 +100,11 @@ export function cautionWords(caution: Caution): string {
       return t().longGap(count(Math.round(caution.days)), day(caution.last));
     case 'weak_field':
       return t().weakField(microtesla(caution.h_nt));
+    case 'variation_unproven':
+      return t().variationUnproven(
+        degrees(Math.abs(caution.zero_deg)),
+        text.refusal.variationMistakes[caution.mistake],
+      );
     default:
       // A newer server may know more than this page does.
       return t().unknown;

@@ -67,6 +67,8 @@ export const trust = {
     'The rows have no times, or share them, so that nobody knows which of them share one error of the gyro. The band takes rows on like headings for half a day’s.',
   largeResiduals: (residual: string) =>
     `Measured and predicted deviation usually differ by ${residual}, more than sound instruments leave. Check compass, gyro and satellite compass, and which input is taken for which, before these figures are believed.`,
+  variationUnproven: (zero: string, mistake: string) =>
+    `The compass’s zero seems to be off by ${zero}. It would seem so, too, if something were wrong with the heading taken for the true one: ${mistake}. Check this on board, or take a bearing of the sun. The band allows for both.`,
   longGap: (days: string, last: string) =>
     `Before the last samples there were none for ${days} days. The curve is for ${last}, and its band allows for what a ship may change in such a time.`,
   unknown: 'This page does not know one of this model’s cautions: load it anew.',
@@ -143,6 +145,15 @@ export const refusal = {
     `The heading taken for the true one is the compass’s own. In ${samples} samples their difference scatters by only ${scatter}, where two instruments with these digits leave at least ${least}.`,
   referenceIsCompassTodo:
     'Check on board which instrument and which sentence is taken for the gyro or satellite compass. It must not be a heading computed from the magnetic compass and the variation.',
+  variationMistaken: (mistake: string, residual: string, explained: string) =>
+    `The heading taken for the true one is not true: ${mistake}. As it stands, no ship’s magnetism fits the samples to less than ${residual}; without this mistake one fits them to ${explained}.`,
+  variationMistakes: {
+    missing: 'the variation is missing in it, it is magnetic',
+    wrong_sign: 'the variation is in it with the wrong sign',
+    doubled: 'the variation is in it twice',
+  },
+  variationMistakenTodo:
+    'Check on board which instrument gives the true heading, and how it adds the variation: true heading is magnetic heading plus variation, east positive. The samples taken so far cannot be used.',
   fewSamplesUsed: (used: string, found: string) =>
     `Only ${used} of ${found} samples agree with any one ship’s magnetism.`,
   fewSamplesUsedTodo:

@@ -8,10 +8,12 @@ mod normal_equations;
 mod ols;
 mod paper;
 mod reference;
+mod reference_check;
 mod residual_check;
 mod robust;
 mod shared_noise;
 mod time_outliers;
+mod variation_check;
 
 pub use crate::gyro_speed_error::gyro_speed_error_deg;
 pub use crate::observation::Observation;
@@ -20,9 +22,9 @@ pub use heading_check::check_headings;
 pub use ols::fit_ols;
 pub use paper::fit_paper;
 pub use reference::{HeadingReading, ObservedReadings, compare_references, observe_readings};
-pub use residual_check::check_residuals;
+pub use reference_check::check_references;
+pub use residual_check::{check_residuals, check_used};
 pub use robust::{REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, fit_robust};
-pub use shared_noise::{
-    HeadingPair, SharedNoise, check_independence, check_readings_independence, weigh_independence,
-};
+pub use shared_noise::{HeadingPair, SharedNoise, check_independence, weigh_independence};
 pub use time_outliers::long_gap;
+pub use variation_check::{PossibleMistake, possible_mistake};

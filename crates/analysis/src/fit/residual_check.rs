@@ -24,15 +24,14 @@ const LEAST_USED_SHARE: f64 = 0.5;
 /// Residual and noise from which the result needs a caution.
 const CAUTION_DEG: f64 = 1.0;
 
-/// Fails for implausible residuals, where most samples have no weight, and where the model
-/// does not explain its own samples. Returns a caution for large residuals.
+/// Fails for implausible residuals, and where the model does not explain its own samples.
+/// Returns a caution for large residuals.
 ///
 /// # Errors
 /// The refusal by name.
 pub fn check_residuals(
     residuals_deg: impl Iterator<Item = f64>,
     levels: &NoiseLevels,
-    samples_used: u64,
 ) -> Result<Option<Caution>, FitError> {
     let residuals: Vec<f64> = residuals_deg.collect();
     let about = |centre| robust_sd(residuals.iter().copied(), centre);
@@ -51,7 +50,6 @@ pub fn check_residuals(
             allowed_deg: limit(ALLOWED_DEG),
         });
     }
-    check_used(samples_used, residuals.len() as u64)?;
     if residual_deg > limit(UNUSABLE_DEG) {
         return Err(FitError::ModelDoesNotExplain {
             residual_deg,
@@ -64,7 +62,10 @@ pub fn check_residuals(
 }
 
 /// Fails where most of the samples have no weight in the fit.
-fn check_used(used: u64, found: u64) -> Result<(), FitError> {
+///
+/// # Errors
+/// [`FitError::FewSamplesUsed`].
+pub fn check_used(used: u64, found: u64) -> Result<(), FitError> {
     if used as f64 >= LEAST_USED_SHARE * found as f64 {
         return Ok(());
     }
@@ -76,35 +77,30 @@ mod tests {
     use super::*;
 
     /// Residuals evenly spread about a middle.
-    fn check(middle_deg: f64, half_width_deg: f64, used: u64) -> Result<Option<Caution>, FitError> {
+    fn check(middle_deg: f64, half_width_deg: f64) -> Result<Option<Caution>, FitError> {
         let place = |row: i32| f64::from(row) / 50.0 - 1.0;
         let residuals = (0..=100).map(|row| middle_deg + half_width_deg * place(row));
-        check_residuals(residuals, &NoiseLevels::TYPICAL, used)
+        check_residuals(residuals, &NoiseLevels::TYPICAL)
     }
 
     #[test]
     fn a_model_of_a_minority_of_the_samples_is_refused() {
-        let refused = check(0.0, 1.0, 50);
-        assert_eq!(
-            refused,
-            Err(FitError::FewSamplesUsed {
-                used: 50,
-                found: 101
-            })
-        );
-        assert_eq!(check(0.0, 1.0, 51), Ok(None));
+        let (used, found) = (50, 101);
+        let refusal = FitError::FewSamplesUsed { used, found };
+        assert_eq!(check_used(used, found), Err(refusal));
+        assert_eq!(check_used(51, found), Ok(()));
     }
 
     #[test]
     fn a_model_that_misses_its_own_samples_by_more_than_a_compass_may_deviate_is_refused() {
-        let refused = check(6.0, 1.0, 101);
+        let refused = check(6.0, 1.0);
         let is_named = matches!(
             refused,
             Err(FitError::ModelDoesNotExplain { residual_deg, .. }) if residual_deg > 5.0
         );
         assert!(is_named, "{refused:?}");
         // A reference that was wrong for days moves the constant.
-        let beside = check(2.5, 1.0, 101);
+        let beside = check(2.5, 1.0);
         assert!(
             matches!(beside, Ok(Some(Caution::LargeResiduals { .. }))),
             "{beside:?}"
@@ -119,7 +115,7 @@ mod tests {
                 ..NoiseLevels::TYPICAL
             };
             let residuals = (0..=100).map(|row| 0.16 * f64::from(row - 50));
-            check_residuals(residuals, &levels, 101)
+            check_residuals(residuals, &levels)
         };
         assert_eq!(check(6.0), Ok(None));
         assert!(check(0.0).is_err());

@@ -2,6 +2,7 @@
 //! and a prior for what headings cannot show.
 
 use super::heading_check::check_headings;
+use super::variation_check::possible_mistake;
 use super::{residual_check, time_outliers};
 use crate::estimate::{Options, Prior, Turn, estimate};
 use crate::observation::Observation;
@@ -9,7 +10,7 @@ use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::result::{FitError, NoiseLevels};
 use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
-use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
+use binnacle_compass::ship::{EarthField, PARAMETERS, WEAKEST_H_NT};
 use std::borrow::Cow;
 
 /// Least number of samples for a fit of eight unknowns.
@@ -121,11 +122,17 @@ fn fit_usable(
     let squares: f64 = used.clone().map(|r| r.residual_deg.powi(2)).sum();
     let samples_used = used.count() as u64;
     let residuals = fitted.rows.iter().map(|row| row.residual_deg);
-    let caution = residual_check::check_residuals(residuals, &fitted.levels, samples_used)?;
+    let caution = residual_check::check_residuals(residuals, &fitted.levels)?;
+    residual_check::check_used(samples_used, rows.len() as u64)?;
     check_needle(&fitted.parameters, rows)?;
     let mut quality = fitted.quality;
     quality.cautions.extend(caution);
     quality.cautions.extend(time_outliers::long_gap(rows));
+    let mut covariance = fitted.covariance;
+    if let Some(possible) = possible_mistake(rows) {
+        covariance[PARAMETERS][PARAMETERS] += possible.variance_deg2;
+        quality.cautions.push(possible.caution);
+    }
 
     let mut outcomes = vec![
         RowOutcome {
@@ -143,7 +150,7 @@ fn fit_usable(
     let model = Model {
         parameters_over_lambda: fitted.parameters,
         constant_deg: fitted.constant_deg,
-        covariance: Some(fitted.covariance),
+        covariance: Some(covariance),
         identifiable: Some(fitted.identifiable),
         rms_deg: Some((squares / samples_used.max(1) as f64).sqrt()),
         samples_used,

@@ -2,8 +2,10 @@
 
 mod json;
 mod reference_grade;
+mod variation_mistake;
 
 pub use reference_grade::ReferenceGrade;
+pub use variation_mistake::VariationMistake;
 
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -152,6 +154,18 @@ pub enum Caution {
     WeakField {
         /// Weakest horizontal field, nT.
         h_nt: f64,
+    },
+    /// The compass's zero is off by about a multiple of the variation, which hardly changes in
+    /// the samples.
+    #[error(
+        "the compass's zero seems to be off by {zero_deg:.1} degrees, as it would seem if, of \
+         the reference, {mistake}: the samples do not show which, and the band allows for both"
+    )]
+    VariationUnproven {
+        /// Mistake of the reference that would explain it.
+        mistake: VariationMistake,
+        /// Constant of the deviation as the reference stands, degrees, east positive.
+        zero_deg: f64,
     },
     /// A caution from a later version of the program.
     #[error("a caution unknown to this version of the program")]

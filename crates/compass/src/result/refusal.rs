@@ -1,5 +1,6 @@
 //! Refusal of a fit.
 
+use crate::model::VariationMistake;
 use serde::{Deserialize, Serialize};
 
 /// Reason for a fit without a model.
@@ -131,6 +132,19 @@ pub enum FitError {
         scatter_deg: f64,
         /// Least scatter of independent instruments with the same digits, degrees.
         least_deg: f64,
+    },
+    /// The reference is no true heading: its error is a multiple of the variation.
+    #[error(
+        "the reference is no true heading: {mistake} (scatter about the best ship \
+         {explained_deg:.1} degrees so, {residual_deg:.1} as it stands)"
+    )]
+    VariationMistaken {
+        /// Mistake that explains the samples.
+        mistake: VariationMistake,
+        /// Robust standard deviation about the best ship as the reference stands, degrees.
+        residual_deg: f64,
+        /// Such a standard deviation where the mistake is undone, degrees.
+        explained_deg: f64,
     },
     /// The fit gave no weight to most of the samples, so that the model is that of a minority.
     #[error(

@@ -11,7 +11,6 @@ use super::input::Input;
 use super::marked_readings::MarkedReadings;
 use super::notices::notices;
 use super::overlaps::merge_overlapping;
-use super::references::References;
 use super::row_times::RowTimes;
 use super::voyage::Voyage;
 use crate::state_space::levels::{Level, Levels};
@@ -30,6 +29,7 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
         faults: marked,
         stays,
         course,
+        references,
     } = MarkedReadings::new(input);
     let mut voyage = Voyage::begin(&input.settings, input.prior);
     let rows = voyage.read_part(input, &readings);
@@ -44,10 +44,6 @@ pub fn analyse(input: &Input<'_>) -> Analysis {
 
     let faults = Faults::new(&detected, &suspected, now);
     let reference_sd_deg = input.settings.reference_constant_sd_deg;
-    let references = match grade {
-        ReferenceGrade::Heading => References::compare(&readings, &voyage.works, reference_sd_deg),
-        ReferenceGrade::CourseOverGround => References::CourseOverGround,
-    };
     record_faults(&mut readings, &references, &faults);
 
     let boundaries = Boundaries::collect(&voyage.works, &detected, &times, logbook);

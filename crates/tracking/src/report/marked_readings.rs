@@ -2,12 +2,13 @@
 
 use super::by_course::CourseUse;
 use super::input::Input;
+use super::references::References;
 use binnacle_analysis::readings::berth_stays::mark_alongside;
 use binnacle_analysis::readings::interference::interference;
 use binnacle_analysis::readings::reading::{Reading, readings};
 use binnacle_analysis::readings::stuck_compass::mark_stuck;
 use binnacle_compass::model::ReferenceGrade;
-use binnacle_compass::result::Change;
+use binnacle_compass::result::{Change, FitError};
 use std::ops::Range;
 
 /// Readings in order of time.
@@ -21,6 +22,7 @@ pub(super) struct MarkedReadings {
     pub(super) stays: Vec<Range<usize>>,
     /// Use of the course over ground, on a ship without heading reference.
     pub(super) course: Option<CourseUse>,
+    pub(super) references: References,
 }
 
 impl MarkedReadings {
@@ -32,12 +34,21 @@ impl MarkedReadings {
         faults.extend(interference(&readings));
         let stays = mark_alongside(&mut readings);
         let course = CourseUse::mark(grade, &mut readings);
+        let one_sd_deg = input.settings.reference_constant_sd_deg;
+        let references = References::compare(grade, &readings, input.logbook, one_sd_deg);
+        references.mark_refused(&mut readings);
         MarkedReadings {
             readings,
             grade,
             faults,
             stays,
             course,
+            references,
         }
     }
+}
+
+/// Returns the first refusal of the references of an input.
+pub(crate) fn refused_references(input: &Input<'_>) -> Option<FitError> {
+    MarkedReadings::new(input).references.refusal()
 }

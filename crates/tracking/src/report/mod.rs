@@ -19,4 +19,5 @@ mod voyage;
 
 pub use analysis::analyse;
 pub use input::Input;
+pub(crate) use marked_readings::refused_references;
 pub use voyage::Voyage;

@@ -1,46 +1,81 @@
 //! Comparison of the references in each epoch of the logbook, and the deviation by them.
 
 use super::faults::Trust;
-use super::voyage::LoggedWork;
-use binnacle_analysis::fit::{HeadingReading, check_readings_independence, compare_references};
+use binnacle_analysis::fit::{HeadingReading, check_references, compare_references};
 use binnacle_analysis::readings::reading::{Reading, heading_reading};
-use binnacle_compass::angle::wrap_180;
-use binnacle_compass::result::{FitError, ReferenceCheck};
+use binnacle_compass::angle::{TrueHeading, wrap_180};
+use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::model::ReferenceGrade;
+use binnacle_compass::result::{FitError, ReferenceCheck, SampleReason};
+use binnacle_compass::time::Timestamp;
 use std::ops::Range;
 
 /// Gyro's share of the reference heading where both are read.
 const GYRO_SHARE: f64 = 0.7;
 
 /// References of the true headings.
-pub(super) enum References {
-    /// Gyro and satellite compass, with comparisons in order of time, one for each epoch of the
-    /// logbook.
-    Headings(Vec<ReferenceSpan>),
-    /// Course over ground, with nothing to compare it with.
-    CourseOverGround,
+pub(super) struct References {
+    grade: ReferenceGrade,
+    /// Comparisons in order of time, one for each epoch of the logbook.
+    spans: Vec<ReferenceSpan>,
 }
 
 /// Comparison of the references in one epoch of the logbook.
 pub(super) struct ReferenceSpan {
     own: Range<usize>,
-    compared: Result<ReferenceCheck, FitError>,
+    /// None where a course over ground has nothing to be compared with.
+    compared: Result<Option<ReferenceCheck>, FitError>,
 }
 
 impl References {
     /// Compares the references of readings in order of time.
     pub(super) fn compare(
+        grade: ReferenceGrade,
         readings: &[Reading],
-        works: &[LoggedWork],
+        logbook: &[LogbookEntry],
         one_constant_sd_deg: f64,
     ) -> References {
-        let place = |work: &LoggedWork| readings.partition_point(|r| r.sample().time < work.at);
+        let works = works(logbook);
+        let place = |at: &Timestamp| readings.partition_point(|r| r.sample().time < *at);
         let begins = std::iter::once(0).chain(works.iter().map(place));
         let ends = works.iter().map(place).chain([readings.len()]);
         let spans = begins.zip(ends).map(|(begin, end)| ReferenceSpan {
             own: begin..end,
-            compared: compare(&readings[begin..end], one_constant_sd_deg),
+            compared: match grade {
+                ReferenceGrade::Heading => {
+                    compare(&readings[begin..end], one_constant_sd_deg).map(Some)
+                }
+                ReferenceGrade::CourseOverGround => {
+                    check_references(&course_readings(&readings[begin..end])).map(|()| None)
+                }
+            },
         });
-        References::Headings(spans.collect())
+        let spans = spans.collect();
+        References { grade, spans }
+    }
+
+    /// Marks the readings of every epoch whose references cannot be used: nothing is made of
+    /// them.
+    pub(super) fn mark_refused(&self, readings: &mut [Reading]) {
+        let refused = self.spans.iter().filter(|span| span.compared.is_err());
+        for span in refused {
+            for reading in &mut readings[span.own.clone()] {
+                // Samples beside magnetic cargo are read, too.
+                let reason = &mut reading.diagnostic.reason;
+                if matches!(reason, None | Some(SampleReason::MagneticCargo)) {
+                    *reason = Some(SampleReason::ReferenceFailed);
+                }
+            }
+        }
+    }
+
+    /// Returns the first refusal.
+    pub(super) fn refusal(&self) -> Option<FitError> {
+        let mut refused = self
+            .spans
+            .iter()
+            .filter_map(|span| span.compared.as_ref().err());
+        refused.next().cloned()
     }
 
     /// Returns the comparison to which the reading in a place belongs; the last one for a place
@@ -49,12 +84,9 @@ impl References {
     /// # Errors
     /// Fails when the references cannot be used.
     pub(super) fn at(&self, place: usize) -> Result<Option<ReferenceCheck>, FitError> {
-        let References::Headings(spans) = self else {
-            return Ok(None);
-        };
-        let within = spans.iter().find(|span| span.own.contains(&place));
-        let span = within.or(spans.last());
-        span.map(|span| span.compared.clone()).transpose()
+        let within = self.spans.iter().find(|span| span.own.contains(&place));
+        let span = within.or(self.spans.last());
+        span.map_or(Ok(None), |span| span.compared.clone())
     }
 
     /// Returns reference less variation less compass of a reading, degrees; none without a
@@ -66,9 +98,9 @@ impl References {
         trust: Trust,
     ) -> Option<f64> {
         let sample = reading.sample();
-        let heading_deg = match self {
-            References::Headings(_) => self.heading_deg(place, reading, trust)?,
-            References::CourseOverGround => sample.cog?.degrees(),
+        let heading_deg = match self.grade {
+            ReferenceGrade::Heading => self.heading_deg(place, reading, trust)?,
+            ReferenceGrade::CourseOverGround => sample.cog?.degrees(),
         };
         let variation_deg = reading.variation?.degrees_east();
         Some(wrap_180(
@@ -96,6 +128,15 @@ impl References {
     }
 }
 
+/// Returns the times of work on ship or compass, in order.
+fn works(logbook: &[LogbookEntry]) -> Vec<Timestamp> {
+    let ending = logbook.iter().filter(|entry| entry.kind.ends_an_epoch());
+    let mut times: Vec<Timestamp> = ending.map(|entry| entry.from).collect();
+    times.sort_unstable();
+    times.dedup();
+    times
+}
+
 fn compare(readings: &[Reading], one_constant_sd_deg: f64) -> Result<ReferenceCheck, FitError> {
     let has_reference = |r: &Reading| r.sample().gyro.or(r.sample().satellite).is_some();
     if !readings.is_empty() && !readings.iter().any(has_reference) {
@@ -104,6 +145,33 @@ fn compare(readings: &[Reading], one_constant_sd_deg: f64) -> Result<ReferenceCh
         });
     }
     let referred: Vec<HeadingReading> = readings.iter().filter_map(heading_reading).collect();
-    check_readings_independence(&referred)?;
+    check_references(&referred)?;
     compare_references(&referred, one_constant_sd_deg)
+}
+
+/// Returns the readings of compass and course over ground where the course stands for a
+/// heading.
+fn course_readings(readings: &[Reading]) -> Vec<HeadingReading> {
+    let steady = readings.iter().filter(|r| r.diagnostic.reason.is_none());
+    let referred = steady.filter_map(|reading| {
+        let sample = reading.sample();
+        let (variation, earth) = reading.variation.zip(reading.earth)?;
+        Some(HeadingReading {
+            time: Some(sample.time),
+            position: Some(sample.position),
+            compass: sample.compass,
+            gyro: None,
+            satellite: None,
+            unnamed: TrueHeading::new(sample.cog?.degrees()),
+            variation,
+            h_nt: earth.h_nt,
+            z_nt: earth.z_nt,
+            // A course over ground has no speed error.
+            sog_kn: None,
+            windows: sample.windows,
+            spread_deg: sample.spread_deg,
+            weight: 1.0,
+        })
+    });
+    referred.collect()
 }

@@ -13,7 +13,7 @@ mod ten_seconds;
 pub use held_out::{HeldOut, Sector};
 pub use settle::{Settled, settle};
 
-use crate::report::{Input, analyse};
+use crate::report::{Input, analyse, refused_references};
 use binnacle_compass::result::{
     Analysis, Change, Epoch, FitError, PredictionCoverage, SampleDiagnostic, SampleReason,
 };
@@ -98,6 +98,11 @@ pub struct PartCheck {
 /// Validates the method on a recording: raw rows, or settled samples.
 pub fn validate(input: &Input<'_>) -> Validation {
     let settled = settle(input.samples);
+    // Rows of every second show more of the references than their means do.
+    let is_raw = settled.sample_s.is_some();
+    if let Some(refusal) = is_raw.then(|| refused_references(input)).flatten() {
+        return without_references(settled, refusal);
+    }
     let analysis = analyse(&Input {
         samples: &settled.samples,
         ..*input
@@ -130,6 +135,23 @@ pub fn validate(input: &Input<'_>) -> Validation {
             samples: stretch.len() as u64,
         },
         parts,
+        settled,
+    }
+}
+
+/// Returns the outcome for a recording whose references cannot be used.
+fn without_references(settled: Settled, refusal: FitError) -> Validation {
+    Validation {
+        used: 0,
+        refused: vec![Refused {
+            reason: SampleReason::ReferenceFailed,
+            samples: settled.samples.len() as u64,
+        }],
+        predictions: PredictionCoverage::default(),
+        changes: Vec::new(),
+        refusal: Some(refusal),
+        stretch: Stretch::default(),
+        parts: Vec::new(),
         settled,
     }
 }

@@ -29,7 +29,7 @@ const LEAST_NOISE_DEG: f64 = 0.07;
 const NOISE_STEP: f64 = 1.35;
 const NOISE_LEVELS: i32 = 15;
 /// Error of a copy beside its digits, degrees: interpolation, and another model's variation.
-const COPY_DEG: f64 = 0.02;
+pub(super) const COPY_DEG: f64 = 0.02;
 /// Share of wild readings under either explanation, each anywhere on the circle.
 const WILD_SHARE: f64 = 0.02;
 /// Number of points for each of two rounding errors, and for one alone, whose edges are sharp.
@@ -60,12 +60,10 @@ pub(super) fn weigh(residuals: &Residuals, digits: Digits) -> Evidence {
         compass_deg,
         reference_deg,
     } = digits;
-    // A copy of the digits shown, of these rounded once more, or of the reading before either
-    // was rounded.
-    let coarser = compass_deg.max(reference_deg);
+    // A copy of the digits shown, or of the reading before these. What it shows is in its own
+    // digits: between them nothing is likelier than within.
     let ways = [
-        Roundings::of(0.0, 0.0),
-        Roundings::of(coarser, 0.0),
+        Roundings::of(0.0, reference_deg),
         Roundings::of(compass_deg, reference_deg),
     ];
     let is_card = residuals.slope.abs() <= STEEPEST_CARD;
@@ -104,10 +102,24 @@ pub(super) fn weigh(residuals: &Residuals, digits: Digits) -> Evidence {
 
 /// Returns the greatest mean log-density of residuals under independent noise of any level.
 fn independent_log_density(roundings: &Roundings, residuals_deg: &[f64]) -> f64 {
-    (0..NOISE_LEVELS)
-        .map(|level| LEAST_NOISE_DEG * NOISE_STEP.powi(level))
+    independent_levels_deg()
         .map(|noise_deg| roundings.mean_log_density(residuals_deg, noise_deg))
         .fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Returns the tried levels of independent noise, degrees, the least first.
+pub(super) fn independent_levels_deg() -> impl Iterator<Item = f64> {
+    (0..NOISE_LEVELS).map(|level| LEAST_NOISE_DEG * NOISE_STEP.powi(level))
+}
+
+/// Returns the log-density per degree of Gaussian noise, with a share of wild readings.
+pub(super) fn log_density(off_deg: f64, sd_deg: f64) -> f64 {
+    let z = off_deg / sd_deg;
+    with_wild((-z * z / 2.0).exp() / (sd_deg * TAU.sqrt()))
+}
+
+fn with_wild(density: f64) -> f64 {
+    ((1.0 - WILD_SHARE) * density + WILD_SHARE / 360.0).ln()
 }
 
 fn root_mean_square(numbers: &[f64]) -> f64 {
@@ -194,7 +206,7 @@ impl Roundings {
             probability * (-z * z / 2.0).exp()
         });
         let density = kernels.sum::<f64>() / (sd_deg * TAU.sqrt());
-        ((1.0 - WILD_SHARE) * density + WILD_SHARE / 360.0).ln()
+        with_wild(density)
     }
 }
 

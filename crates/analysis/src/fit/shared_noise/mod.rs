@@ -6,21 +6,22 @@
 //! compass has one, too. What gives it away is shared noise. Card, sensor and gyro err each by
 //! itself, and each reading is rounded by itself, so that the difference of independent
 //! instruments scatters about any smooth curve of deviation. A copy's difference scatters by
-//! no more than its digits. The two explanations are compared by their likelihoods.
+//! no more than its digits. The two explanations are compared by their likelihoods, row by row
+//! and by the means of courses.
 
+mod courses;
 mod curve;
 mod digits;
 mod likelihood;
 mod pair;
 
 use binnacle_compass::result::FitError;
+use courses::weigh_courses;
 use curve::residuals;
 use digits::digits_deg;
 use likelihood::{Digits, Evidence, weigh};
 pub use pair::HeadingPair;
 use std::collections::BTreeSet;
-
-use super::reference::HeadingReading;
 
 /// Least number of pairs on different readings: several for each unknown of the curve.
 const NEEDED_PAIRS: usize = 40;
@@ -37,29 +38,15 @@ const SECTOR_DEG: f64 = 1.0;
 /// instruments one is refused.
 const THRESHOLD: f64 = 9.2;
 
-/// Checks that no reference of these readings shares its noise with the compass.
-///
-/// # Errors
-/// [`FitError::ReferenceIsCompass`].
-pub fn check_readings_independence(readings: &[HeadingReading]) -> Result<(), FitError> {
-    type Source = fn(&HeadingReading) -> Option<binnacle_compass::angle::TrueHeading>;
-    let sources: [Source; 3] = [|r| r.gyro, |r| r.satellite, |r| r.unnamed];
-    for source in sources {
-        let pairs = readings
-            .iter()
-            .filter_map(|reading| Some(HeadingPair::of_reading(reading, source(reading)?)));
-        check_independence(&pairs.collect::<Vec<_>>())?;
-    }
-    Ok(())
-}
-
 /// Checks that a reference has its own noise, by pairs of compass and reference in any order.
 /// Few pairs, or pairs on few headings, show nothing and pass.
 ///
 /// # Errors
 /// [`FitError::ReferenceIsCompass`].
 pub fn check_independence(pairs: &[HeadingPair]) -> Result<(), FitError> {
-    let Some(evidence) = weigh_independence(pairs).filter(SharedNoise::is_shared) else {
+    let sorted = sorted(pairs);
+    let either = [weigh_independence(&sorted), weigh_courses(&sorted)];
+    let Some(evidence) = either.into_iter().flatten().find(SharedNoise::is_shared) else {
         return Ok(());
     };
     Err(FitError::ReferenceIsCompass {
@@ -119,18 +106,8 @@ impl SharedNoise {
 /// Weighs shared against independent noise, by pairs of compass and reference in any order;
 /// none where there are too few of them.
 pub fn weigh_independence(pairs: &[HeadingPair]) -> Option<SharedNoise> {
-    let mut sorted = pairs.to_vec();
-    sorted.sort_by(|a, b| (a.time.cmp(&b.time)).then(a.compass_deg().total_cmp(&b.compass_deg())));
-    let digits_of = |reading: fn(&HeadingPair) -> f64| {
-        let readings: Vec<f64> = sorted.iter().map(reading).collect();
-        digits_deg(&readings)
-    };
-    let digits = Digits {
-        compass_deg: digits_of(HeadingPair::compass_deg),
-        // A correction of the speed error hides them.
-        reference_deg: digits_of(HeadingPair::reference_deg)
-            .max(digits_of(HeadingPair::raw_reference_deg)),
-    };
+    let sorted = sorted(pairs);
+    let digits = digits(&sorted);
     let chosen = turned_pairs(&sorted, digits.compass_deg.max(LEAST_TURN_DEG));
     if chosen.len() < NEEDED_PAIRS {
         return None;
@@ -152,6 +129,27 @@ pub fn weigh_independence(pairs: &[HeadingPair]) -> Option<SharedNoise> {
         scatter_deg,
         least_deg: likelihood::least_scatter_deg(digits),
     })
+}
+
+/// Returns the digits of both instruments.
+fn digits(pairs: &[HeadingPair]) -> Digits {
+    let digits_of = |reading: fn(&HeadingPair) -> f64| {
+        let readings: Vec<f64> = pairs.iter().map(reading).collect();
+        digits_deg(&readings)
+    };
+    Digits {
+        compass_deg: digits_of(HeadingPair::compass_deg),
+        // A correction of the speed error hides them.
+        reference_deg: digits_of(HeadingPair::reference_deg)
+            .max(digits_of(HeadingPair::raw_reference_deg)),
+    }
+}
+
+/// Returns pairs in order of time.
+fn sorted(pairs: &[HeadingPair]) -> Vec<HeadingPair> {
+    let mut sorted = pairs.to_vec();
+    sorted.sort_by(|a, b| (a.time.cmp(&b.time)).then(a.compass_deg().total_cmp(&b.compass_deg())));
+    sorted
 }
 
 /// Returns the places of enough pairs between which the compass turned.

@@ -10,9 +10,11 @@ use crate::report::references::References;
 use crate::report::voyage::{NEEDED_SAMPLES, TrackedRow};
 use crate::state_space::ship_state::ShipState;
 use crate::weighing::records::Detected;
-use binnacle_analysis::fit::{Observation, check_headings, check_residuals, long_gap};
+use binnacle_analysis::fit::{
+    Observation, check_headings, check_residuals, check_used, long_gap, possible_mistake,
+};
 use binnacle_analysis::fleet_prior::ShipPrior;
-use binnacle_analysis::readings::reading::{Reading, heading_reading};
+use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Caution, Model, ReferenceGrade};
@@ -80,11 +82,6 @@ impl Fitting<'_> {
         let check = match self.references.at(span.own.start) {
             Ok(check) => check.map(|check| self.count_dropped(check, own)),
             Err(refusal) => {
-                let referred = readings[span.own.clone()].iter_mut();
-                for reading in referred.filter(|r| heading_reading(r).is_some()) {
-                    let reason = &mut reading.diagnostic.reason;
-                    *reason = reason.or(Some(SampleReason::ReferenceFailed));
-                }
                 epoch.refusal = Some(refusal);
                 return epoch;
             }
@@ -121,6 +118,15 @@ impl Fitting<'_> {
         let rows = self.rows[begin..end].iter().copied();
         rows.filter(|row| readings[row.place].diagnostic.reason.is_none())
             .collect()
+    }
+
+    /// Returns the number of rows of an epoch that were read as samples of the vessel: what the
+    /// analysis itself declares a fault of the reference is among them.
+    fn found(&self, span: &Span<'_>, readings: &[Reading]) -> u64 {
+        let rows = self.rows.iter().filter(|row| span.own.contains(&row.place));
+        let laden = Some(SampleReason::MagneticCargo);
+        let read = rows.filter(|row| readings[row.place].diagnostic.reason != laden);
+        read.count() as u64
     }
 
     fn model(
@@ -168,11 +174,14 @@ impl Fitting<'_> {
         let residuals = usable.iter().map(|row| row.innovation_deg);
         let used = usable.iter();
         let used = used.filter(|row| readings[row.place].diagnostic.used);
+        let found = self.found(span, readings);
         // A few rows after a change may all have been read before it was known.
         let caution = if usable.len() < NEEDED_SAMPLES {
             None
         } else {
-            check_residuals(residuals, &self.noise, used.count() as u64)?
+            let caution = check_residuals(residuals, &self.noise)?;
+            check_used(used.count() as u64, found)?;
+            caution
         };
         self.complete(&mut model, &observations, ship, caution);
         count(&mut model, &readings[span.own.clone()], &earlier, before);
@@ -241,6 +250,13 @@ impl Fitting<'_> {
         let (mut quality, identifiable) = quality(model, &known);
         quality.cautions.extend(caution);
         quality.cautions.extend(long_gap(observations));
+        // An azimuth shows whose error the constant is, and a course over ground drifts.
+        let is_open = self.course.is_none() && !identifiable.constant_deg;
+        let possible = is_open.then(|| possible_mistake(observations)).flatten();
+        if let Some((possible, covariance)) = possible.zip(model.covariance.as_mut()) {
+            covariance[PARAMETERS][PARAMETERS] += possible.variance_deg2;
+            quality.cautions.push(possible.caution);
+        }
         model.quality = Some(quality);
         model.identifiable = Some(identifiable);
     }

@@ -1,0 +1,25 @@
+//! Refusals of references by their readings alone, before any fit.
+
+use super::reference::HeadingReading;
+use super::shared_noise::{HeadingPair, check_independence};
+use super::variation_check::check_variation;
+use binnacle_compass::angle::TrueHeading;
+use binnacle_compass::result::FitError;
+
+/// Checks that no reference of these readings is made of the compass, and that each is a true
+/// heading.
+///
+/// # Errors
+/// [`FitError::ReferenceIsCompass`] and [`FitError::VariationMistaken`].
+pub fn check_references(readings: &[HeadingReading]) -> Result<(), FitError> {
+    type Source = fn(&HeadingReading) -> Option<TrueHeading>;
+    let sources: [Source; 3] = [|r| r.gyro, |r| r.satellite, |r| r.unnamed];
+    for source in sources {
+        let pairs = readings
+            .iter()
+            .filter_map(|reading| Some(HeadingPair::of_reading(reading, source(reading)?)));
+        check_independence(&pairs.collect::<Vec<_>>())?;
+        check_variation(readings, source)?;
+    }
+    Ok(())
+}
