@@ -57,7 +57,14 @@ pub(super) fn read_samples(
     path: &Path,
     gyro_speed_error: GyroSpeedError,
 ) -> Result<Vec<Sample>, BadInput> {
-    let table = input::Table::read(path)?;
+    samples(&input::Table::read(path)?, gyro_speed_error)
+}
+
+/// Returns the samples of a table.
+pub(super) fn samples(
+    table: &input::Table,
+    gyro_speed_error: GyroSpeedError,
+) -> Result<Vec<Sample>, BadInput> {
     // Input that `fit` refuses is refused here too.
     readings_from_csv(&table.rows, gyro_speed_error.into())
         .map_err(|error| table.error_at(&error))?;

@@ -17,7 +17,7 @@ mod variation_check;
 
 pub use crate::gyro_speed_error::gyro_speed_error_deg;
 pub use crate::observation::Observation;
-pub use csv_row::{CsvRow, CsvRowError, Motion, check_columns, readings_from_csv};
+pub use csv_row::{CsvRow, CsvRowError, Motion, check_columns, readings_from_csv, reference_grade};
 pub use heading_check::check_headings;
 pub use ols::fit_ols;
 pub use paper::fit_paper;

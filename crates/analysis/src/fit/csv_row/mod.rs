@@ -11,6 +11,7 @@ use super::HeadingReading;
 use crate::gyro_speed_error::gyro_speed_error_deg;
 use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation};
 use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::number::CompactNumber;
 use binnacle_compass::position::Position;
 use binnacle_compass::settings::GyroSpeedError;
@@ -114,7 +115,8 @@ impl CsvRowError {
 
 /// Checks that a header has what a fit needs: `compass_deg`; one of `gyro_deg`,
 /// `satellite_deg` and `reference_deg`; and either `variation_deg`, `h_nt` and `z_nt` or
-/// `time`, `lat` and `lon`.
+/// `time`, `lat` and `lon`. On a ship without these headings `cog_deg` and `sog_kn` stand for
+/// them, with `time`, `lat` and `lon`.
 ///
 /// # Errors
 /// [`CsvRowError::MissingColumn`] with the first that is missing.
@@ -129,13 +131,19 @@ pub fn check_columns<'a>(header: impl IntoIterator<Item = &'a str>) -> Result<()
         }
     };
     need("compass_deg")?;
-    if !["gyro_deg", "satellite_deg", "reference_deg"]
+    let has_heading = ["gyro_deg", "satellite_deg", "reference_deg"]
         .into_iter()
-        .any(has)
-    {
-        return Err(CsvRowError::MissingColumn(
-            "gyro_deg, satellite_deg or reference_deg",
-        ));
+        .any(has);
+    if !has_heading {
+        if !has("cog_deg") {
+            return Err(CsvRowError::MissingColumn(
+                "gyro_deg, satellite_deg, reference_deg or cog_deg",
+            ));
+        }
+        need("sog_kn")?;
+        need("time")?;
+        need("lat")?;
+        return need("lon");
     }
     if ["variation_deg", "h_nt", "z_nt"].into_iter().any(has) && !(has("lat") && has("lon")) {
         need("variation_deg")?;
@@ -145,6 +153,18 @@ pub fn check_columns<'a>(header: impl IntoIterator<Item = &'a str>) -> Result<()
     need("time")?;
     need("lat")?;
     need("lon")
+}
+
+/// Returns the grade of a table: that of course over ground if no row has a true heading, and
+/// some have a course.
+pub fn reference_grade(rows: &[CsvRow]) -> ReferenceGrade {
+    let heading = |row: &CsvRow| row.gyro_deg.or(row.satellite_deg).or(row.reference_deg);
+    let has_course = rows.iter().any(|row| row.cog_deg.is_some());
+    if has_course && rows.iter().all(|row| heading(row).is_none()) {
+        ReferenceGrade::CourseOverGround
+    } else {
+        ReferenceGrade::Heading
+    }
 }
 
 /// Makes readings of rows, in order of time and then of everything else, so that the order

@@ -188,6 +188,8 @@ fn a_missing_column_is_named() {
         ]),
         Ok(())
     );
+    let by_course = ["time", "lat", "lon", "compass_deg", "cog_deg", "sog_kn"];
+    assert_eq!(check_columns(by_course), Ok(()));
     for (header, missing) in [
         (vec!["time", "lat", "lon", "gyro_deg"], "compass_deg"),
         (vec!["time", "lat", "compass_deg", "gyro_deg"], "lon"),
@@ -197,7 +199,22 @@ fn a_missing_column_is_named() {
         ),
         (
             vec!["time", "lat", "lon", "compass_deg"],
-            "gyro_deg, satellite_deg or reference_deg",
+            "gyro_deg, satellite_deg, reference_deg or cog_deg",
+        ),
+        (
+            vec!["time", "lat", "lon", "compass_deg", "cog_deg"],
+            "sog_kn",
+        ),
+        (
+            vec![
+                "variation_deg",
+                "h_nt",
+                "z_nt",
+                "compass_deg",
+                "cog_deg",
+                "sog_kn",
+            ],
+            "time",
         ),
     ] {
         assert_eq!(

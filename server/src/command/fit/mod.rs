@@ -1,15 +1,17 @@
 //! `fit`: fits a model to a file.
 
+mod by_course;
+
 use super::{BadInput, input, json, print_result, table};
 use crate::cli::{Fit, Method};
 use binnacle_analysis::advice::{Question, advise};
 use binnacle_analysis::fit::{
-    Observation, RobustFit, RobustOptions, check_references, fit_ols, fit_paper,
-    fit_robust, observe_readings, readings_from_csv,
+    Observation, RobustFit, RobustOptions, check_references, fit_ols, fit_paper, fit_robust,
+    observe_readings, readings_from_csv, reference_grade,
 };
 use binnacle_compass::coverage::coverage;
 use binnacle_compass::deviation::PARAMETER_NAMES;
-use binnacle_compass::model::{Model, Quality};
+use binnacle_compass::model::{Model, Quality, ReferenceGrade};
 use binnacle_compass::result::{FitError, HeadingRange, ReferenceCheck, SailNext};
 use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
 use binnacle_compass::ship::EarthField;
@@ -18,9 +20,12 @@ use std::process::ExitCode;
 /// Result of a fit.
 struct FitResult {
     model: Model,
-    check: ReferenceCheck,
+    /// Comparison of the references; none of a course over ground.
+    check: Option<ReferenceCheck>,
     /// Advice on headings; only with the product's estimator.
     sail_next: Option<SailNext>,
+    /// Remarks on the samples.
+    notices: Vec<String>,
 }
 
 /// Prints the model, as a table or as JSON.
@@ -39,6 +44,9 @@ pub fn fit(arguments: &Fit) -> anyhow::Result<ExitCode> {
 
 fn find(arguments: &Fit) -> Result<FitResult, BadInput> {
     let table = input::Table::read(&arguments.file)?;
+    if reference_grade(&table.rows) == ReferenceGrade::CourseOverGround {
+        return by_course::find(arguments, &table);
+    }
     let readings = readings_from_csv(&table.rows, arguments.gyro_speed_error.into())
         .map_err(|error| table.error_at(&error))?;
     let refused = |error: FitError| BadInput(format!("{}: {error}", arguments.file.display()));
@@ -66,8 +74,9 @@ fn find(arguments: &Fit) -> Result<FitResult, BadInput> {
     model.samples_rejected += (reckoned + readings.len() - observations.len()) as u64;
     Ok(FitResult {
         model,
-        check: referred.check,
+        check: Some(referred.check),
         sail_next,
+        notices: Vec::new(),
     })
 }
 
@@ -146,11 +155,19 @@ fn describe(found: &FitResult) -> String {
         .quality
         .as_ref()
         .map_or_else(String::new, describe_quality)
-        + &describe_rejected(&found.check)
+        + &found
+            .check
+            .as_ref()
+            .map_or_else(String::new, describe_rejected)
         + &found
             .sail_next
             .as_ref()
             .map_or_else(String::new, describe_band)
+        + &found
+            .notices
+            .iter()
+            .map(|notice| format!("\n{notice}"))
+            .collect::<String>()
 }
 
 /// Names the reference that was rejected.
