@@ -5,7 +5,7 @@
 mod drifting_ship;
 
 use binnacle_analysis::fleet_prior::ShipPrior;
-use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading, wrap_180};
 use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::result::{Analysis, Cause, Change, FitError, SampleReason};
 use binnacle_compass::sample::Sample;
@@ -149,6 +149,28 @@ fn a_drifting_ship_is_refused_by_name() {
         "{:?}",
         analysis.notices
     );
+}
+
+#[test]
+fn a_course_made_of_the_compass_is_refused() {
+    let plan = Plan {
+        days: 15.0,
+        ..SOUND
+    };
+    let mut samples = sail(54, &plan).samples;
+    let variations: Vec<f64> = run(&samples)
+        .samples
+        .iter()
+        .map(|s| s.variation_deg.unwrap())
+        .collect();
+    for (sample, variation_deg) in samples.iter_mut().zip(variations) {
+        sample.cog = CourseOverGround::new(sample.compass.degrees() + variation_deg);
+    }
+    let analysis = run(&samples);
+    let refusal = analysis.current_epoch().unwrap().refusal.clone();
+    let is_named = matches!(refusal, Some(FitError::ReferenceIsCompass { .. }));
+    assert!(is_named, "{refusal:?}");
+    assert_eq!(analysis.changes, []);
 }
 
 #[test]

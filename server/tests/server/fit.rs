@@ -2,7 +2,7 @@
 
 use crate::run;
 use binnacle_compass::angle::MagneticHeading;
-use binnacle_compass::model::Model;
+use binnacle_compass::model::{Model, ReferenceGrade};
 use binnacle_compass::ship::EarthField;
 use binnacle_server_testing::program::{assert_refused, good, samples_csv};
 use binnacle_server_testing::true_model;
@@ -159,4 +159,47 @@ fn rows_of_a_reckoned_position_are_in_no_estimate() {
         .iter()
         .filter(|sample| sample["reason"] == "gnss_interference");
     assert_eq!(reckoned.count(), 5);
+}
+
+/// A course over ground on long straight runs, with a set and leeway of some degrees.
+fn by_course() -> String {
+    let mut text = "time,lat,lon,compass_deg,cog_deg,sog_kn\n".to_owned();
+    for row in 0..720 {
+        let heading = f64::from(row / 18 * 67 % 360);
+        let (day, hour, minute) = (1 + row / 144, row / 6 % 24, row % 6 * 10);
+        let magnetic = MagneticHeading::new(heading + 2.0).unwrap();
+        let earth = EarthField {
+            h_nt: 24_000.0,
+            z_nt: 38_500.0,
+        };
+        let compass = true_model().compass(magnetic, earth).unwrap().degrees();
+        let drift =
+            2.0 * (heading.to_radians() + 0.4).sin() + 0.7 * f64::from(row * 37 % 11 - 5) / 5.0;
+        let cog = (heading + drift + 360.0) % 360.0;
+        writeln!(
+            text,
+            "2026-11-{day:02}T{hour:02}:{minute:02}:00Z,45,-8,{compass},{cog},12"
+        )
+        .unwrap();
+    }
+    text
+}
+
+#[test]
+fn a_table_with_a_course_over_ground_alone_gives_a_model_of_that_grade() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("course.csv"), by_course()).unwrap();
+    let model = good(&run(folder.path(), &["fit", "course.csv", "--json"]));
+    let model: Model = serde_json::from_str(&model).unwrap();
+    assert_eq!(model.reference_grade, ReferenceGrade::CourseOverGround);
+    let text = good(&run(folder.path(), &["fit", "course.csv"]));
+    assert!(text.contains("the course over ground on"), "{text}");
+    for command in ["analyse", "validate"] {
+        let text = good(&run(folder.path(), &[command, "course.csv"]));
+        assert!(!text.is_empty());
+    }
+    assert_refused(
+        &run(folder.path(), &["fit", "course.csv", "--method", "ols"]),
+        &["course.csv", "--method robust"],
+    );
 }

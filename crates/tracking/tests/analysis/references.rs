@@ -1,7 +1,7 @@
 //! One reference, two, and their faults.
 
 use super::*;
-use binnacle_compass::model::Model;
+use binnacle_compass::model::{Model, VariationMistake};
 
 #[test]
 fn a_wild_gyro_reading_is_rejected_and_named() {
@@ -65,6 +65,32 @@ fn a_reference_made_of_the_compass_is_refused_by_name() {
         );
     }
     assert_eq!(run(&base).epochs[0].refusal, None);
+}
+
+#[test]
+fn nothing_is_made_of_a_refused_reference() {
+    let mut samples = voyage();
+    for sample in &mut samples {
+        let earth = field(FieldModel::Igrf14, sample.position, 0.0, sample.time).unwrap();
+        let variation_deg = earth.declination().degrees_east();
+        let gyro = sample.gyro.unwrap().degrees();
+        // The variation subtracted where it is added.
+        sample.gyro = TrueHeading::new(gyro - 2.0 * variation_deg);
+    }
+    let analysis = run(&samples);
+    let [epoch] = analysis.epochs.as_slice() else {
+        panic!("{:?}", analysis.epochs);
+    };
+    let is_named = matches!(
+        epoch.refusal,
+        Some(FitError::VariationMistaken {
+            mistake: VariationMistake::WrongSign,
+            ..
+        })
+    );
+    assert!(is_named, "{:?}", epoch.refusal);
+    assert_eq!(epoch.model, None);
+    assert_eq!(analysis.changes, []);
 }
 
 /// The voyage with a satellite compass beside the gyro.
