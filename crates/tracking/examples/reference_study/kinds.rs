@@ -15,14 +15,13 @@ pub(crate) struct Kind {
 fn copy(readings: &[Reading], seconds: usize) -> f64 {
     let now = readings[readings.len() - 1];
     let then = readings[readings.len().saturating_sub(1 + seconds)];
-    then.shown_deg + now.variation_deg
+    then.shown + now.variation_deg
 }
 
 fn smoothed(readings: &[Reading], seconds: usize) -> f64 {
     let now = readings[readings.len() - 1];
     let last = &readings[readings.len().saturating_sub(seconds)..];
-    last.iter().map(|reading| reading.shown_deg).sum::<f64>() / last.len() as f64
-        + now.variation_deg
+    last.iter().map(|reading| reading.shown).sum::<f64>() / last.len() as f64 + now.variation_deg
 }
 
 fn own(readings: &[Reading], digit_deg: f64) -> f64 {
@@ -51,11 +50,11 @@ pub(crate) const KINDS: [Kind; 17] = [
     kind("copy, both whole", 1.0, |r, _| rounded(copy(r, 0), 1.0)),
     kind("copy, each whole", 1.0, |r, _| {
         let now = r[r.len() - 1];
-        rounded(now.raw_deg + now.variation_deg, 1.0)
+        rounded(now.raw + now.variation_deg, 1.0)
     }),
     kind("copy in tenths of whole", 1.0, |r, _| {
         let now = r[r.len() - 1];
-        rounded(now.raw_deg + now.variation_deg, 0.1)
+        rounded(now.raw + now.variation_deg, 0.1)
     }),
     kind("copy, noise 0.05", 0.1, |r, rng| {
         copy(r, 0) + 0.05 * gauss(rng)
@@ -72,6 +71,6 @@ pub(crate) const KINDS: [Kind; 17] = [
     }),
     kind("copy by a card", 0.1, |r, _| {
         let now = r[r.len() - 1];
-        now.shown_deg + 3.0 * now.shown_deg.to_radians().sin() + now.variation_deg
+        now.shown + 3.0 * now.shown.to_radians().sin() + now.variation_deg
     }),
 ];

@@ -20,7 +20,9 @@ use ship::{Ship, WEATHERS};
 fn main() {
     let ships = std::env::args().nth(1).and_then(|n| n.parse().ok());
     let ships: u64 = ships.unwrap_or(20);
-    println!("refused of {ships} ships by rows and by settled samples, with the mean log-likelihood ratio row by row");
+    println!(
+        "refused of {ships} ships by rows and by settled samples, with the mean log-likelihood ratio row by row"
+    );
     for weather in &WEATHERS {
         for kind in &KINDS {
             let (mut rows, mut samples) = (Tally::default(), Tally::default());

@@ -61,8 +61,8 @@ pub(crate) const WEATHERS: [Weather; 3] = [
 /// Readings of a second, degrees.
 #[derive(Clone, Copy)]
 pub(crate) struct Reading {
-    pub(crate) raw_deg: f64,
-    pub(crate) shown_deg: f64,
+    pub(crate) raw: f64,
+    pub(crate) shown: f64,
     pub(crate) satellite_deg: f64,
     pub(crate) variation_deg: f64,
 }
@@ -165,7 +165,7 @@ impl Ship<'_> {
                 ..Sample::new(
                     start.plus_seconds(second as f64),
                     position,
-                    CompassHeading::new(reading.shown_deg).unwrap(),
+                    CompassHeading::new(reading.shown).unwrap(),
                 )
             });
         }
@@ -194,15 +194,15 @@ impl Ship<'_> {
         // The card follows within some seconds.
         let aim_deg = magnetic_deg - deviation_deg;
         self.card_deg += 0.4 * (aim_deg - self.card_deg);
-        let raw_deg = self.card_deg
+        let raw = self.card_deg
             + self.friction_deg
             + weather.swing_deg * self.swing.at
             + weather.compass_deg * gauss(&mut self.rng);
         let satellite_deg =
             true_deg + weather.slow_deg * self.slow + weather.satellite_deg * gauss(&mut self.rng);
         Reading {
-            raw_deg,
-            shown_deg: rounded(raw_deg, kind.compass_digit_deg),
+            raw,
+            shown: rounded(raw, kind.compass_digit_deg),
             satellite_deg,
             variation_deg,
         }
