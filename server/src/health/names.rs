@@ -1,4 +1,4 @@
-//! What each metric of `/metrics` is.
+//! Descriptions of the metrics of `/metrics`.
 
 use metrics::{describe_counter, describe_gauge, describe_histogram, gauge};
 

@@ -2,7 +2,7 @@
 
 use super::reference::HeadingReading;
 use super::shared_noise::{HeadingPair, check_independence};
-use super::variation_check::check_variation;
+use super::variation_check::{Row, check_variation};
 use binnacle_compass::angle::TrueHeading;
 use binnacle_compass::result::FitError;
 
@@ -19,7 +19,22 @@ pub fn check_references(readings: &[HeadingReading]) -> Result<(), FitError> {
             .iter()
             .filter_map(|reading| Some(HeadingPair::of_reading(reading, source(reading)?)));
         check_independence(&pairs.collect::<Vec<_>>())?;
-        check_variation(readings, source)?;
+        let rows = readings
+            .iter()
+            .filter_map(|reading| Some(row(reading, source(reading)?)));
+        check_variation(rows.collect())?;
     }
     Ok(())
+}
+
+/// Returns a reading's row by a reference as it stands.
+fn row(reading: &HeadingReading, reference: TrueHeading) -> Row {
+    let deviation = (reference - reading.variation) - reading.compass;
+    Row {
+        compass: reading.compass,
+        deviation_deg: deviation.degrees_east(),
+        variation: reading.variation,
+        h_nt: reading.h_nt,
+        z_nt: reading.z_nt,
+    }
 }

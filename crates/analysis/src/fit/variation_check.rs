@@ -6,9 +6,8 @@
 //! multiple does. In one sea the variation is a constant, like the compass's own zero: where
 //! that is off by about as much, neither explanation is proven, and the band allows for both.
 
-use super::reference::HeadingReading;
 use crate::observation::Observation;
-use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation, wrap_180};
+use binnacle_compass::angle::{CompassHeading, Variation, wrap_180};
 use binnacle_compass::model::{Caution, VariationMistake};
 use binnacle_compass::result::FitError;
 use nalgebra::{SMatrix, SVector};
@@ -57,12 +56,12 @@ type Columns = SVector<f64, UNKNOWNS>;
 
 /// Row by a reference as it stands.
 #[derive(Clone, Copy)]
-struct Row {
-    compass: CompassHeading,
-    deviation_deg: f64,
-    variation: Variation,
-    h_nt: f64,
-    z_nt: f64,
+pub(super) struct Row {
+    pub(super) compass: CompassHeading,
+    pub(super) deviation_deg: f64,
+    pub(super) variation: Variation,
+    pub(super) h_nt: f64,
+    pub(super) z_nt: f64,
 }
 
 /// Best ship for a reference less some multiple of the variation.
@@ -85,21 +84,8 @@ pub struct PossibleMistake {
 ///
 /// # Errors
 /// [`FitError::VariationMistaken`].
-pub(super) fn check_variation(
-    readings: &[HeadingReading],
-    reference: fn(&HeadingReading) -> Option<TrueHeading>,
-) -> Result<(), FitError> {
-    let rows = readings.iter().filter_map(|reading| {
-        let deviation = (reference(reading)? - reading.variation) - reading.compass;
-        Some(Row {
-            compass: reading.compass,
-            deviation_deg: deviation.degrees_east(),
-            variation: reading.variation,
-            h_nt: reading.h_nt,
-            z_nt: reading.z_nt,
-        })
-    });
-    let rows = thinned(rows.collect());
+pub(super) fn check_variation(rows: Vec<Row>) -> Result<(), FitError> {
+    let rows = thinned(rows);
     let as_read = BestShip::find(&rows, 0.0);
     let Some(as_read) = as_read.filter(|ship| ship.scatter_deg > UNEXPLAINED_DEG) else {
         return Ok(());

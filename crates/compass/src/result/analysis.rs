@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 /// Name of the estimator, kept with its models. It changes whenever the same input may lead
 /// to another model.
-pub const ESTIMATOR: &str = "hypotheses-1";
+pub const ESTIMATOR: &str = "hypotheses-2";
 
 /// Result of an analysis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -166,7 +166,7 @@ fn describe(found: &FitResult) -> String {
         + &found
             .notices
             .iter()
-            .map(|notice| format!("\n{notice}"))
+            .flat_map(|notice| ["\n", notice.as_str()])
             .collect::<String>()
 }
 
