@@ -12,6 +12,8 @@ import {
 
 const names = (page) => page.getByRole('rowheader').getByRole('link').allInnerTexts();
 const map = (page) => page.getByRole('application', { name: 'Map of the fleet' });
+/** Requests for pages of the fleet, not for one vessel of it. */
+const wholeFleet = /\/api\/v1\/fleet\?limit=/;
 /** How many pixels each mark's middle lies within the map; negative where it is off it. */
 const marksWithin = (page) =>
   page.evaluate(() => {
@@ -66,7 +68,7 @@ export const fleet = {
   'the whole fleet is on the map, with room around it, on every screen': {
     allowedErrors: [notSignedIn],
     async run({ page, settings, shoot }) {
-      await page.route('**/api/v1/fleet', async (route) => {
+      await page.route(wholeFleet, async (route) => {
         const response = await route.fetch();
         const body = await response.json();
         const [vessel] = body.vessels.filter(({ position }) => position);
@@ -210,7 +212,7 @@ export const fleet = {
   'a band stands on one line, and the search knows no accents': {
     allowedErrors: [notSignedIn],
     async run({ page, settings }) {
-      await page.route('**/api/v1/fleet', async (route) => {
+      await page.route(wholeFleet, async (route) => {
         const response = await route.fetch();
         const body = await response.json();
         const vessels = body.vessels.map((vessel) => ({
@@ -255,7 +257,7 @@ export const fleet = {
     allowedErrors: [notSignedIn],
     async run({ page, settings }) {
       let added = false;
-      await page.route('**/api/v1/fleet', async (route) => {
+      await page.route(wholeFleet, async (route) => {
         const response = await route.fetch();
         const body = await response.json();
         const [vessel] = body.vessels;
