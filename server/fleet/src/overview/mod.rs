@@ -1,7 +1,8 @@
 //! Overview of a fleet: vessels page by page, for a map and a table side by side.
 //!
 //! Invariants: it is one operator's fleet, or the one vessel requested, in the order of
-//! entry. A page reads no other page's records. It repeats facts of the vessels' own pages in short, because a slow link carries them.
+//! entry. A page reads no other page's records. It repeats facts of the vessels' own pages in
+//! short, because a slow link carries them.
 
 mod store;
 
