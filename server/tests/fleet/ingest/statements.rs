@@ -2,7 +2,7 @@
 
 use super::DAY;
 use binnacle_server_testing::{Engine, TestServer, passage};
-use std::sync::{Arc, Mutex};
+use std::cell::RefCell;
 use tracing::field::{Field, Visit};
 use tracing::{Event, Subscriber};
 use tracing_subscriber::layer::{Context, Layer, SubscriberExt};
@@ -12,22 +12,31 @@ use tracing_subscriber::registry::Registry;
 /// earlier events.
 const OTHERS: [&str; 3] = ["BEGIN", "COMMIT", "SELECT pg_notify"];
 
-/// Statements that this thread has run.
-#[derive(Clone, Default)]
-struct Statements(Arc<Mutex<Vec<String>>>);
+thread_local! {
+    /// Statements that this thread has run since it began to record, `None` while it does not.
+    static STATEMENTS: RefCell<Option<Vec<String>>> = const { RefCell::new(None) };
+}
 
-impl<S: Subscriber> Layer<S> for Statements {
+/// Records statements on the threads that ask for it. It is the subscriber of the whole process,
+/// for one of a single thread misses what another thread has run first.
+struct Recorder;
+
+impl<S: Subscriber> Layer<S> for Recorder {
     fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
         if event.metadata().target() == "sqlx::query" {
-            event.record(&mut self.clone());
+            event.record(&mut Recorder);
         }
     }
 }
 
-impl Visit for Statements {
+impl Visit for Recorder {
     fn record_str(&mut self, field: &Field, value: &str) {
         if field.name() == "summary" && !OTHERS.iter().any(|other| value.starts_with(other)) {
-            self.0.lock().unwrap().push(value.to_owned());
+            STATEMENTS.with_borrow_mut(|statements| {
+                if let Some(statements) = statements {
+                    statements.push(value.to_owned());
+                }
+            });
         }
     }
 
@@ -41,12 +50,10 @@ async fn a_batch_in_order_takes_six_statements() {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 3)).await.good();
-    let statements = Statements::default();
-    let subscriber = Registry::default().with(statements.clone());
-    let recording = tracing::subscriber::set_default(subscriber);
+    tracing::subscriber::set_global_default(Registry::default().with(Recorder)).unwrap();
+    STATEMENTS.set(Some(Vec::new()));
     nao.put(2, &passage("2026-11-20T06:00:00Z", 3)).await.good();
-    drop(recording);
-    let statements = statements.0.lock().unwrap().clone();
+    let statements = STATEMENTS.take().unwrap();
     assert_eq!(statements.len(), 6, "{statements:#?}");
     server.finish().await;
 }
