@@ -31,9 +31,13 @@
 //! **Kept state.** A [`Voyage`] is a plain value with all that the reading of the next sample
 //! needs: kept and read again, it goes on as if it had never been put away.
 //!
+//! **Constants.** Those of the detector stand in one list (`constants`), each with unit and
+//! source; what is known of ships and events beforehand stands in tables.
+//!
 //! Invariants: the analysis is a pure function of its input; order and repetition of samples
 //! change nothing; every state has a prior, so that no result is ever NaN.
 
+mod constants;
 mod hypotheses;
 mod report;
 mod state_space;

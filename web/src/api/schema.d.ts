@@ -4230,7 +4230,7 @@ export interface components {
             data_until: components["schemas"]["Time"];
             /**
              * @description The estimator that made it.
-             * @example hypotheses-2
+             * @example hypotheses-3
              */
             estimator: string;
             /** @description Time at which it was fitted or predicted. */

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 /// Name of the estimator, kept with its models. It changes whenever the same input may lead
 /// to another model.
-pub const ESTIMATOR: &str = "hypotheses-2";
+pub const ESTIMATOR: &str = "hypotheses-3";
 
 /// Result of an analysis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

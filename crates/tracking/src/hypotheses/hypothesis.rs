@@ -1,6 +1,7 @@
 //! One account of what happened: a filter, and the events that it supposes.
 
-use super::kinds::{Ending, Kind, Stay};
+use super::kinds::{Course, Ending, Jump, Kind, REALIGNMENT, Stay, WORK};
+use crate::constants::{AMID_DEG, HELD_DEG, OPEN_DEG, TEACHES, WILD};
 use crate::state_space::filter::{Filter, Innovation, Marginal};
 use crate::state_space::levels::{Level, Levels};
 use crate::state_space::row::Row;
@@ -19,25 +20,6 @@ use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 use std::sync::Arc;
-
-/// Growth of a ramping gyro's error, degrees squared a second: a degree in a day.
-const RAMP_DEG2_PER_S: f64 = 1.0 / 86_400.0;
-/// Memory of a storm's variation, seconds.
-const STORM_S: f64 = 3600.0;
-/// Change of the induced parameters by work that leaves them, over the population.
-const WORKED_INDUCED: f64 = 0.4;
-/// Change of the alignment by work on the compass, degrees.
-const REALIGNED_DEG: f64 = 2.0;
-/// Probability of a wild reading.
-const WILD: f64 = 0.004;
-/// Standard deviation of a row's share of a jump, degrees.
-const AMID_DEG: f64 = 1.5;
-/// Uncertainty of the deviation from which a row may teach much, degrees.
-const OPEN_DEG: f64 = 0.7;
-/// Standard deviation of a stuck instrument's readings, degrees.
-const HELD_DEG: f64 = 0.3;
-/// Ratio of a prediction's variance to the reading's from which the reading teaches much.
-const TEACHES: f64 = 20.0;
 
 /// Supposed event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -368,15 +350,18 @@ impl Hypothesis {
     }
 
     fn adjust(&self, transition: &mut Transition, row: &Row) {
+        let seconds = row.seconds;
         for kind in self.lasting() {
-            if let Some(deg) = kind.row().storm_deg {
-                transition.disturb(row.seconds, STORM_S, deg);
-            }
-            match kind {
-                Kind::ShipDrift => transition.grow(row.seconds / 86_400.0),
-                Kind::GyroRamp => transition.added[GYRO] += RAMP_DEG2_PER_S * row.seconds,
-                Kind::Anomaly => transition.pass_anomaly(row.seconds),
-                _ => {}
+            match kind.row().course {
+                Course::Still => {}
+                Course::Growing => transition.grow(seconds / 86_400.0),
+                Course::Wandering(deg2_per_s) => transition.added[GYRO] += deg2_per_s * seconds,
+                Course::Storming { sd_deg, memory_s } => {
+                    transition.disturb(seconds / memory_s, sd_deg);
+                }
+                Course::Passing { sd_deg, memory_s } => {
+                    transition.pass_anomaly(seconds / memory_s, sd_deg);
+                }
             }
         }
     }
@@ -424,17 +409,16 @@ impl Hypothesis {
 
     /// Forgets what work on ship or compass undid.
     pub(crate) fn renew(&mut self, kind: LogbookKind) {
-        let mut free = [WORKED_INDUCED; PARAMETERS];
-        (free[BX], free[BY]) = (1.0, 1.0);
+        let mut free = |jump: &Jump| {
+            self.filter.covariance[jump.state][jump.state] += jump.sd * jump.sd;
+        };
         if kind.preserves_soft_iron() {
-            for (j, sd) in free.iter().enumerate() {
-                self.filter.covariance[j][j] += sd * sd;
-            }
+            WORK.iter().for_each(free);
         } else {
+            free(&REALIGNMENT);
             let states: Vec<usize> = (0..PARAMETERS).collect();
             let anew = Filter::new(&[0.0; STATES], &[1.0; STATES]);
             self.filter.restore(&Marginal::from_filter(&anew, &states));
-            self.filter.covariance[ALIGNMENT][ALIGNMENT] += REALIGNED_DEG * REALIGNED_DEG;
         }
     }
 
@@ -451,10 +435,10 @@ impl Hypothesis {
         let ended = lasting.filter_map(|(i, event)| {
             let stay = event.stay_until(&begin.row);
             let probability = match event.kind.row().ending {
-                ending @ Ending::InPort(_) if begin.in_port => {
+                ending @ Ending::InPort { .. } if begin.in_port => {
                     event.probability * ending.probability_at_call(stay.calls + 1)
                 }
-                Ending::Never | Ending::InPort(_) => return None,
+                Ending::Never | Ending::InPort { .. } => return None,
                 ending => ending.probability(stay, step),
             };
             (probability > 0.0).then(|| self.with_end(i, begin, probability.ln()))

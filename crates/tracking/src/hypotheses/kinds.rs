@@ -1,5 +1,6 @@
 //! The table of events: how often each kind happens, what it moves, and how it ends.
 
+use crate::constants::{DAY_S, HOUR_S};
 use crate::state_space::row::{Row, USUAL_KN};
 use crate::state_space::states::{ALIGNMENT, ANOMALY, BX, BY, GROWTH, GYRO, SATELLITE, SETTLING};
 use binnacle_analysis::estimate::POPULATION_SD;
@@ -58,13 +59,26 @@ pub(crate) enum Ending {
     After(f64),
     /// After some distance, nautical miles in the mean; what it moved returns.
     AfterMiles(f64),
-    /// At a port call, with this probability at the first; what it moved returns.
-    InPort(f64),
+    /// At a port call, with some probability at the first, and a share of the one before at each
+    /// later: what was not discharged may be there to stay. What it moved returns.
+    InPort { first: f64, later: f64 },
 }
 
-/// Probability of an end at a port call over that at the call before: what was not discharged
-/// at the first calls may be there to stay.
-const LATER_CALL: f64 = 0.7;
+/// Course of what an event moves while it lasts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Course {
+    /// It stays as it is.
+    Still,
+    /// The ship's permanent magnetism grows steadily.
+    Growing,
+    /// The gyro's error wanders off, degrees squared a second.
+    Wandering(f64),
+    /// The variation is disturbed: standard deviation in degrees where H is usual, and memory in
+    /// seconds.
+    Storming { sd_deg: f64, memory_s: f64 },
+    /// The variation changes smoothly as the ship passes: the same.
+    Passing { sd_deg: f64, memory_s: f64 },
+}
 
 impl Ending {
     /// Returns the logarithm of the probability that an event lasts for longer than a stay, and
@@ -74,7 +88,7 @@ impl Ending {
         let (mean, lasted) = match self {
             Ending::After(mean_s) => (mean_s, lasted.seconds),
             Ending::AfterMiles(mean_nm) => (mean_nm, lasted.miles),
-            Ending::Never | Ending::InPort(_) => return None,
+            Ending::Never | Ending::InPort { .. } => return None,
         };
         let rate = 2.0 / mean;
         let periods = rate * lasted.max(0.0);
@@ -96,7 +110,7 @@ impl Ending {
     /// Returns the probability that an event ends at a port call, counted from its beginning.
     pub(crate) fn probability_at_call(self, call: u32) -> f64 {
         match self {
-            Ending::InPort(first) => first * LATER_CALL.powi(call.cast_signed() - 1),
+            Ending::InPort { first, later } => first * later.powi(call.cast_signed() - 1),
             _ => 0.0,
         }
     }
@@ -138,8 +152,10 @@ pub(crate) struct KindRow {
     pub(crate) a_call: f64,
     pub(crate) jumps: &'static [Jump],
     pub(crate) ending: Ending,
-    /// Standard deviation of the variation in a storm, degrees where H is usual.
-    pub(crate) storm_deg: Option<f64>,
+    pub(crate) course: Course,
+    /// Size of the compass's errors in it, degrees where H is usual: the largest storms on record
+    /// come to about eight, a damaged card moves by any number.
+    pub(crate) error_deg: f64,
 }
 
 const fn jump(state: usize, sd: f64) -> Jump {
@@ -148,9 +164,20 @@ const fn jump(state: usize, sd: f64) -> Jump {
 
 /// Growth of a drifting ship's (bx, by) a day, in units of the population: 2 µT in thirty days.
 const GROWTH_SD: f64 = 2000.0 / POPULATION_SD[BX] / 30.0;
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 86_400.0;
 const YEAR_S: f64 = 365.25 * DAY_S;
+
+/// Jumps by work that leaves the soft iron, in units of the population.
+pub(crate) const WORK: [Jump; PARAMETERS] = [
+    jump(BX, 1.0),
+    jump(1, 0.4),
+    jump(BY, 1.0),
+    jump(3, 0.4),
+    jump(4, 0.4),
+    jump(5, 0.4),
+    jump(6, 0.4),
+];
+/// Jump by work on the compass beside that of all of the ship's magnetism, degrees.
+pub(crate) const REALIGNMENT: Jump = jump(ALIGNMENT, 2.0);
 
 /// All kinds. Storms are those of the Kp indices 7 and 9 (ranges in three hours by the K index of
 /// Niemegk).
@@ -166,8 +193,12 @@ pub(crate) const KINDS: [KindRow; 15] = [
             jump(5, 0.05),
             jump(6, 0.05),
         ],
-        ending: Ending::InPort(0.02),
-        storm_deg: None,
+        ending: Ending::InPort {
+            first: 0.02,
+            later: 0.7,
+        },
+        course: Course::Still,
+        error_deg: f64::INFINITY,
     },
     KindRow {
         kind: Kind::Cargo,
@@ -182,8 +213,12 @@ pub(crate) const KINDS: [KindRow; 15] = [
             jump(5, 0.4),
             jump(6, 0.4),
         ],
-        ending: Ending::InPort(0.3),
-        storm_deg: None,
+        ending: Ending::InPort {
+            first: 0.3,
+            later: 0.7,
+        },
+        course: Course::Still,
+        error_deg: f64::INFINITY,
     },
     KindRow {
         kind: Kind::Alignment,
@@ -191,7 +226,8 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.002,
         jumps: &[jump(ALIGNMENT, 6.0)],
         ending: Ending::Never,
-        storm_deg: None,
+        course: Course::Still,
+        error_deg: f64::INFINITY,
     },
     KindRow {
         kind: Kind::ShipDrift,
@@ -199,7 +235,8 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[jump(GROWTH, GROWTH_SD), jump(GROWTH + 1, GROWTH_SD)],
         ending: Ending::After(40.0 * DAY_S),
-        storm_deg: None,
+        course: Course::Growing,
+        error_deg: f64::INFINITY,
     },
     KindRow {
         kind: Kind::GyroStep,
@@ -207,7 +244,8 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.005,
         jumps: &[jump(GYRO, 6.0)],
         ending: Ending::After(3.0 * DAY_S),
-        storm_deg: None,
+        course: Course::Still,
+        error_deg: f64::INFINITY,
     },
     KindRow {
         kind: Kind::SatelliteStep,
@@ -215,7 +253,8 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.005,
         jumps: &[jump(SATELLITE, 6.0)],
         ending: Ending::After(3.0 * DAY_S),
-        storm_deg: None,
+        course: Course::Still,
+        error_deg: f64::INFINITY,
     },
     KindRow {
         kind: Kind::GyroSettling,
@@ -223,7 +262,8 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.01,
         jumps: &[jump(SETTLING, 3.0)],
         ending: Ending::Never,
-        storm_deg: None,
+        course: Course::Still,
+        error_deg: f64::INFINITY,
     },
     KindRow {
         kind: Kind::GyroRamp,
@@ -231,7 +271,8 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(6.0 * DAY_S),
-        storm_deg: None,
+        course: Course::Wandering(1.0 / DAY_S),
+        error_deg: f64::INFINITY,
     },
     KindRow {
         kind: Kind::Storm,
@@ -239,7 +280,11 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(8.0 * HOUR_S),
-        storm_deg: Some(0.9),
+        course: Course::Storming {
+            sd_deg: 0.9,
+            memory_s: HOUR_S,
+        },
+        error_deg: 5.0,
     },
     KindRow {
         kind: Kind::SevereStorm,
@@ -247,7 +292,11 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(8.0 * HOUR_S),
-        storm_deg: Some(2.0),
+        course: Course::Storming {
+            sd_deg: 2.0,
+            memory_s: HOUR_S,
+        },
+        error_deg: 5.0,
     },
     KindRow {
         kind: Kind::Anomaly,
@@ -255,7 +304,11 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::AfterMiles(25.0),
-        storm_deg: None,
+        course: Course::Passing {
+            sd_deg: 2.5,
+            memory_s: 4500.0,
+        },
+        error_deg: 6.0,
     },
     KindRow {
         kind: Kind::FailedCard,
@@ -263,7 +316,8 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(DAY_S),
-        storm_deg: None,
+        course: Course::Still,
+        error_deg: 10.0,
     },
     KindRow {
         kind: Kind::FailedGyro,
@@ -271,7 +325,8 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(DAY_S),
-        storm_deg: None,
+        course: Course::Still,
+        error_deg: f64::INFINITY,
     },
     KindRow {
         kind: Kind::FailedSatellite,
@@ -279,7 +334,8 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[],
         ending: Ending::After(DAY_S),
-        storm_deg: None,
+        course: Course::Still,
+        error_deg: f64::INFINITY,
     },
     KindRow {
         kind: Kind::Deflection,
@@ -287,7 +343,8 @@ pub(crate) const KINDS: [KindRow; 15] = [
         a_call: 0.0,
         jumps: &[jump(BX, 1.2), jump(BY, 1.2)],
         ending: Ending::After(3.0 * HOUR_S),
-        storm_deg: None,
+        course: Course::Still,
+        error_deg: f64::INFINITY,
     },
 ];
 
@@ -296,7 +353,7 @@ impl KindRow {
     /// without, and has not ended since.
     pub(crate) fn probability(&self, seconds: f64, in_port: bool) -> f64 {
         let longest_s = match self.ending {
-            Ending::Never | Ending::InPort(_) => f64::INFINITY,
+            Ending::Never | Ending::InPort { .. } => f64::INFINITY,
             Ending::After(mean_s) => mean_s,
             Ending::AfterMiles(mean_nm) => HOUR_S * mean_nm / USUAL_KN,
         };

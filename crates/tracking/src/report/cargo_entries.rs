@@ -8,17 +8,11 @@
 //! for weeks.
 
 use super::epochs::Span;
+use crate::constants::{DAY_S, KEPT_ROWS, REPORTED_WITHIN_S, SETTLED_S};
 use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::result::{Cause, SampleReason};
 use binnacle_compass::time::Timestamp;
-
-/// Days and readings after which cargo that moves the compass would have shown.
-const SHOWN_DAYS: f64 = 21.0;
-const SHOWN_READINGS: usize = 500;
-const DAY_S: f64 = 86_400.0;
-/// Time before an entry within which a change belongs to its cargo, seconds.
-const LOADED_BEFORE_S: f64 = 2.0 * DAY_S;
 
 /// Open cargo entry that the samples contradict.
 #[derive(Clone, Copy, Debug)]
@@ -109,7 +103,7 @@ fn contradicted(
     let first = readings.first()?.sample().time;
     let until = readings.last()?.sample().time;
     let from = entry.from.max(first);
-    let loaded = from.plus_seconds(-LOADED_BEFORE_S);
+    let loaded = from.plus_seconds(-REPORTED_WITHIN_S);
     let begun = || spans.iter().filter_map(|span| Some((span.from?, span)));
     let first_since = begun().find(|(at, _)| *at > loaded).map(|(_, span)| span);
     let returns = begun().filter(|(at, span)| span.is_return && *at > from);
@@ -120,8 +114,8 @@ fn contradicted(
     let mut starts = std::iter::once((from, loaded, false)).chain(returns);
     starts.find_map(|(since, after, is_back)| {
         let laden = readings.partition_point(|r| r.sample().time < since);
-        let many = readings.get(laden + SHOWN_READINGS)?.sample().time;
-        let by = many.max(since.plus_seconds(SHOWN_DAYS * DAY_S));
+        let many = readings.get(laden + KEPT_ROWS)?.sample().time;
+        let by = many.max(since.plus_seconds(SETTLED_S));
         let is_apart = begun().any(|(at, _)| at > after && at <= by);
         let later = begun().map(|(at, _)| at).find(|at| *at > by);
         (until > by && !is_apart).then_some(ContradictedEntry {
@@ -194,9 +188,10 @@ fn exclusion(entry: &LogbookEntry, readings: &[Reading]) -> Option<String> {
             "{left_out} samples are left out of the model, because the logbook has magnetic cargo \
              on board since {}, with {}. If it was discharged, record the end of the entry. If \
              it is on board, the band allows for a change by it; when nothing sets the samples \
-             apart for {SHOWN_DAYS:.0} days, they are used again",
+             apart for {:.0} days, they are used again",
             entry.from,
-            end_in_words(entry)
+            end_in_words(entry),
+            SETTLED_S / DAY_S
         )
     })
 }

@@ -4,6 +4,7 @@
 //! A strike is lightning at sea and work in port, unless the logbook says otherwise. A passing
 //! disturbance of many degrees is rather a fault of the compass.
 
+use crate::constants::{DAY_S, IMPROBABLE, REPORTED_FACTOR, REPORTED_WITHIN_S, SAME_S};
 use crate::hypotheses::hypothesis::Event;
 use crate::hypotheses::kinds::Kind;
 use crate::weighing::records::{Class, Detected};
@@ -12,39 +13,6 @@ use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Cause, CauseProbability};
 use binnacle_compass::time::Timestamp;
 
-/// Factor on the weight of a cause that people reported at the time.
-const REPORTED_FACTOR: f64 = 100.0;
-/// Probability that a strike by which a vessel changed at sea, or in port, was lightning or a
-/// blow and not work.
-const STRUCK_AT_SEA: f64 = 0.9;
-const STRUCK_IN_PORT: f64 = 0.1;
-/// Probability that a change of the permanent magnetism in port is cargo.
-const LIFTED: f64 = 0.5;
-/// Sizes that errors have in storms, over anomalies and by faults of the compass, degrees where
-/// H is 24 µT. The largest storms on record come to about eight; a damaged card moves by any
-/// number.
-const STORM_DEG: f64 = 5.0;
-const ANOMALY_DEG: f64 = 6.0;
-const FAULT_DEG: f64 = 10.0;
-/// Faults of a compass that swings, and of a lone reference, over storms and anomalies.
-const COMPASS_FAULTS: f64 = 0.03;
-const LONE_REFERENCE_FAULTS: f64 = 0.06;
-/// Probability below which a cause is not named.
-const NEGLIGIBLE: f64 = 0.005;
-/// Probability that a change of the whole ship in port is cargo and not work.
-const LOADED: f64 = 0.85;
-/// Probability that a step in port that a later port call undid was cargo and not work.
-const DISCHARGED: f64 = 0.95;
-/// Tolerance of the logbook's times after an event, seconds: people write down when they
-/// noticed.
-const REPORTED_WITHIN_S: f64 = 2.0 * 86_400.0;
-/// Tolerance of work before an event, seconds: at sea a clock's error, in port the delay of a
-/// plan.
-const WORKED_BEFORE_S: f64 = 6.0 * 3600.0;
-const PLANNED_S: f64 = 86_400.0;
-/// Tolerance of cargo after a change, seconds: a hasty entry.
-const LOADED_AFTER_S: f64 = 6.0 * 3600.0;
-
 /// Circumstances of an event that part its causes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Circumstances {
@@ -52,6 +20,13 @@ pub(super) struct Circumstances {
     pub(super) disturbance_deg: Option<f64>,
     /// True if there was one reference only.
     pub(super) one_reference: bool,
+}
+
+impl Circumstances {
+    /// Returns the error over the size of those in events of a kind.
+    fn over_size(&self, kind: Kind) -> f64 {
+        self.disturbance_deg.unwrap_or(0.0) / kind.row().error_deg
+    }
 }
 
 /// Returns the probable causes of an event, the likeliest first.
@@ -90,52 +65,43 @@ fn add(weights: &mut Vec<CauseProbability>, cause: Cause, probability: f64) {
     }
 }
 
-/// Returns the causes of a kind of event, each with its share.
+/// Returns the causes of a kind of event, each with its share: assumed, for nobody has counted
+/// them. Of a hundred changes at sea ninety are lightning or a blow and ten work that nobody wrote
+/// down; in port it is the other way about, and half are cargo.
 fn shares(kind: Kind, event: &Event, known: &Circumstances) -> Vec<(Cause, f64)> {
-    let disturbance_deg = known.disturbance_deg.unwrap_or(0.0);
-    let square = |deg: f64| (disturbance_deg / deg).powi(2);
-    let by_fault = square(FAULT_DEG) / (1.0 + square(FAULT_DEG));
-    let lone = if known.one_reference {
-        LONE_REFERENCE_FAULTS
-    } else {
-        0.0
-    };
-    let passing = |cause: Cause, share: f64| {
-        vec![
-            (cause, share),
-            (Cause::CompassFault, COMPASS_FAULTS * by_fault),
-            (Cause::ReferenceFault, lone * by_fault),
-        ]
-    };
     match kind {
+        // Work is not undone at a port call.
         Kind::Strike if event.in_port && event.until.is_some() => vec![
-            (Cause::MagneticCargo, DISCHARGED),
-            (Cause::AdjustmentOrRepair, 1.0 - DISCHARGED),
+            (Cause::MagneticCargo, 0.95),
+            (Cause::AdjustmentOrRepair, 0.05),
         ],
         // Steel that was lifted by magnets is cargo without much induced magnetism.
         Kind::Strike if event.in_port => vec![
-            (Cause::MagneticCargo, LIFTED),
-            (Cause::LightningOrShock, STRUCK_IN_PORT),
-            (Cause::AdjustmentOrRepair, 1.0 - LIFTED - STRUCK_IN_PORT),
+            (Cause::MagneticCargo, 0.5),
+            (Cause::LightningOrShock, 0.1),
+            (Cause::AdjustmentOrRepair, 0.4),
         ],
         Kind::Strike => vec![
-            (Cause::LightningOrShock, STRUCK_AT_SEA),
-            (Cause::AdjustmentOrRepair, 1.0 - STRUCK_AT_SEA),
+            (Cause::LightningOrShock, 0.9),
+            (Cause::AdjustmentOrRepair, 0.1),
         ],
         Kind::Deflection => vec![(Cause::Unknown, 1.0)],
-        // Work is not undone at a port call.
         Kind::Cargo if event.until.is_some() => vec![(Cause::MagneticCargo, 1.0)],
         Kind::Cargo => vec![
-            (Cause::MagneticCargo, LOADED),
-            (Cause::AdjustmentOrRepair, 1.0 - LOADED),
+            (Cause::MagneticCargo, 0.85),
+            (Cause::AdjustmentOrRepair, 0.15),
         ],
         Kind::Alignment => vec![(Cause::Alignment, 1.0)],
         Kind::ShipDrift => vec![(Cause::Drift, 1.0)],
         Kind::FailedCard => vec![(Cause::CompassFault, 1.0)],
         Kind::Storm | Kind::SevereStorm => {
-            passing(Cause::MagneticStorm, (-square(STORM_DEG)).exp())
+            let share = (-known.over_size(kind).powi(2)).exp();
+            passing(Cause::MagneticStorm, share, known)
         }
-        Kind::Anomaly => passing(Cause::LocalAnomaly, 1.0 / (1.0 + square(ANOMALY_DEG))),
+        Kind::Anomaly => {
+            let share = 1.0 / (1.0 + known.over_size(kind).powi(2));
+            passing(Cause::LocalAnomaly, share, known)
+        }
         Kind::GyroStep
         | Kind::SatelliteStep
         | Kind::GyroSettling
@@ -143,6 +109,19 @@ fn shares(kind: Kind, event: &Event, known: &Circumstances) -> Vec<(Cause, f64)>
         | Kind::FailedGyro
         | Kind::FailedSatellite => vec![(Cause::ReferenceFault, 1.0)],
     }
+}
+
+/// Returns the causes of what passes by: as large as it is, it may be a compass that swings, or a
+/// lone reference. Of a hundred large errors, three and six are assumed to be.
+fn passing(cause: Cause, share: f64, known: &Circumstances) -> Vec<(Cause, f64)> {
+    let square = known.over_size(Kind::FailedCard).powi(2);
+    let by_fault = square / (1.0 + square);
+    let lone = if known.one_reference { 0.06 } else { 0.0 };
+    vec![
+        (cause, share),
+        (Cause::CompassFault, 0.03 * by_fault),
+        (Cause::ReferenceFault, lone * by_fault),
+    ]
 }
 
 /// Limits the weights of causes that contradict the class of the event to the likeliest of
@@ -168,7 +147,7 @@ fn limit_to_class(class: Class, weights: &mut [CauseProbability]) {
 /// Returns the causes with the sum 1, the likeliest first.
 fn normalised(mut weights: Vec<CauseProbability>) -> Vec<CauseProbability> {
     let sum: f64 = weights.iter().map(|weight| weight.probability).sum();
-    weights.retain(|weight| weight.probability >= NEGLIGIBLE * sum);
+    weights.retain(|weight| weight.probability >= IMPROBABLE * sum);
     let kept: f64 = weights.iter().map(|weight| weight.probability).sum();
     for weight in &mut weights {
         weight.probability /= kept;
@@ -177,7 +156,8 @@ fn normalised(mut weights: Vec<CauseProbability>) -> Vec<CauseProbability> {
     weights
 }
 
-/// Returns the causes that people reported at about the time of an event.
+/// Returns the causes that people reported at about the time of an event. They write down when they
+/// noticed; work is written down as it was planned, in port by the day.
 pub(super) fn reported(detected: &Detected, logbook: &[LogbookEntry]) -> Vec<Cause> {
     let event = &detected.event;
     let earliest = detected.posterior.earliest.min(event.from);
@@ -191,15 +171,11 @@ pub(super) fn reported(detected: &Detected, logbook: &[LogbookEntry]) -> Vec<Cau
             // It changes the vessel when it is loaded and when it is discharged.
             let is_then = |time| {
                 earliest.seconds_since(time) < REPORTED_WITHIN_S
-                    && latest.seconds_since(time) > -LOADED_AFTER_S
+                    && latest.seconds_since(time) > -SAME_S
             };
             event.in_port && (is_then(entry.from) || is_then(to))
         } else if entry.kind.ends_an_epoch() {
-            let before_s = if event.in_port {
-                PLANNED_S
-            } else {
-                WORKED_BEFORE_S
-            };
+            let before_s = if event.in_port { DAY_S } else { SAME_S };
             near(entry.from, to, before_s)
         } else {
             near(entry.from, to, REPORTED_WITHIN_S)

@@ -4,15 +4,13 @@
 use super::faults::{Faults, Trust};
 use super::references::References;
 use super::voyage::TrackedRow;
+use crate::state_space::states::USUAL_H_NT;
 use binnacle_analysis::estimate::weight;
 use binnacle_analysis::fit::{Observation, REJECTED_BELOW};
 use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::angle::{Deviation, wrap_180};
 use binnacle_compass::model::Model;
 use binnacle_compass::result::{NoiseLevels, SampleReason};
-
-/// Horizontal field for which errors of the variation are given, nT.
-const USUAL_H_NT: f64 = 24_000.0;
 
 /// Records in each reading its deviation, and the reason of a fault that spoils it.
 pub(super) fn record_faults(readings: &mut [Reading], references: &References, faults: &Faults) {

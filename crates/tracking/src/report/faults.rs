@@ -1,14 +1,12 @@
 //! Times in which a detected event spoils samples.
 
+use crate::constants::SETTLED_MEMORIES;
 use crate::hypotheses::kinds::Kind;
 use crate::state_space::transition::SETTLING_S;
 use crate::weighing::records::{Class, Detected};
 use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::result::SampleReason;
 use binnacle_compass::time::Timestamp;
-
-/// Memories of a settling gyro after which it is right again.
-const SETTLED_MEMORIES: f64 = 3.0;
 
 /// Time in which a detected event spoils samples.
 #[derive(Clone, Copy, Debug)]

@@ -2,6 +2,7 @@
 
 use super::cargo_entries::{self, ContradictedEntry};
 use super::voyage::Voyage;
+use crate::constants::{DETECTED_SD, WATCHED_FOR_NT};
 use crate::state_space::ship_state::ShipState;
 use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::angle::CompassHeading;
@@ -14,12 +15,6 @@ use binnacle_compass::ship::{EarthField, PARAMETERS};
 const UNWATCHED: &str = "too little is known of the vessel so far to detect a change of its \
                          magnetism: one would not be noticed. Steady courses on more \
                          headings, by gyro or satellite compass, are needed";
-/// Innovation by which a change is detected, standard deviations: it outweighs the prior of an
-/// event in one hour of a year, and the detection threshold.
-const DETECTED_SD: f64 = 5.0;
-/// Step of the permanent magnetism that a watched vessel shows, nT: one that moves the compass
-/// by five degrees.
-const WATCHED_FOR_NT: f64 = 2000.0;
 /// Number of headings at which the uncertainty is evaluated.
 const HEADINGS: u32 = 24;
 

@@ -4,13 +4,12 @@
 //! together they explain the samples better than either.
 
 use super::faults::{end, reference};
+use crate::constants::HOUR_S;
 use crate::weighing::records::{Class, Detected};
 use binnacle_compass::time::Timestamp;
 
-/// Time between the end of an event and the next within which they are one, seconds.
-const ONE_WITHIN_S: f64 = 3600.0;
-
-/// Merges events of one subject, the ship excepted, that overlap in time by now.
+/// Merges events of one subject, the ship excepted, that overlap in time by now, or follow each
+/// other within an hour.
 pub(super) fn merge_overlapping(detected: &[Detected], now: Option<Timestamp>) -> Vec<Detected> {
     let mut merged: Vec<Detected> = Vec::with_capacity(detected.len());
     for next in detected {
@@ -33,7 +32,7 @@ fn is_one(a: &Detected, b: &Detected) -> bool {
     let begins_in = |one: &Detected, other: &Detected| {
         let until = other.event.until;
         one.event.from >= other.event.from
-            && until.is_none_or(|until| one.event.from.seconds_since(until) < ONE_WITHIN_S)
+            && until.is_none_or(|until| one.event.from.seconds_since(until) < HOUR_S)
     };
     is_of_one_subject && is_in_force && (begins_in(a, b) || begins_in(b, a))
 }

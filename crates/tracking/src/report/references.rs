@@ -1,6 +1,7 @@
 //! Comparison of the references in each epoch of the logbook, and the deviation by them.
 
 use super::faults::Trust;
+use crate::state_space::scalar::GYRO_SHARE;
 use binnacle_analysis::fit::{HeadingReading, check_references, compare_references};
 use binnacle_analysis::readings::reading::{Reading, heading_reading};
 use binnacle_compass::angle::{TrueHeading, wrap_180};
@@ -9,9 +10,6 @@ use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::result::{FitError, ReferenceCheck, SampleReason};
 use binnacle_compass::time::Timestamp;
 use std::ops::Range;
-
-/// Gyro's share of the reference heading where both are read.
-const GYRO_SHARE: f64 = 0.7;
 
 /// References of the true headings.
 pub(super) struct References {

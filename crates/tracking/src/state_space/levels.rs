@@ -7,7 +7,8 @@
 use super::row::Row;
 use serde::{Deserialize, Serialize};
 
-/// Size of a habit on a ship that has it more than others.
+/// Size of a habit on a ship that has it more than others, over the level. Assumed: twice the
+/// spread of the logarithm over ships (e^1.4).
 const LIVELY: f64 = 4.0;
 /// Number of levels.
 pub(crate) const LEVELS: usize = 13;
@@ -86,6 +87,10 @@ impl Level {
 
     /// Returns the size on a usual ship, and the standard deviation of its logarithm over
     /// ships.
+    ///
+    /// Sizes are assumed: below what instruments are allowed (compass of class A 0.5° and friction
+    /// of (3/H)° with H in µT; gyro 0.75° sec φ, IMO A.424(XI)), and what ballast moves, 0.1 µT in a
+    /// month or at a call. The spreads let each ship teach her own.
     pub(crate) fn prior(self) -> Size {
         let (usual, spread) = match self {
             Level::White

@@ -15,19 +15,21 @@ use std::f64::consts::TAU;
 
 const DAY_S: f64 = 86_400.0;
 /// Time between rows, beyond that of sailing from one to the other, that counts as a port
-/// call, seconds. Where the speed is not known the ship sails at the usual one, knots.
+/// call, seconds. Assumed: a call takes that long with its pilotage. Where the speed is not known
+/// the ship sails at the usual one, knots.
 pub(crate) const PORT_GAP_S: f64 = 2.5 * 3600.0;
 pub(crate) const USUAL_KN: f64 = 10.0;
 /// Noise of the velocity over the ground across it in a mean of minutes, knots: receiver and
-/// seaway. It is a degree at 6 knots.
+/// seaway. Assumed: it is a degree at 6 knots.
 const COURSE_NOISE_KN: f64 = 0.1;
 /// Greatest change of heading in a straight run, degrees, greatest time between its rows,
-/// seconds, and number of rows over which its mean is taken.
+/// seconds, and number of rows over which its mean is taken. Assumed: an hour on one course.
 const RUN_DEG: f64 = 5.0;
 const RUN_GAP_S: f64 = 3600.0;
 const RUN_ROWS: f64 = 6.0;
 /// Readings before the step of an instrument is judged, share of them that lie on it, and the
-/// distance within which one does.
+/// distance within which one does. Assumed: instruments give tenths of a degree, or whole and half
+/// ones, without exception but for a mean's rounding.
 const FEWEST_READINGS: u32 = 10;
 const COARSE_SHARE: f64 = 0.95;
 const SAME_DIGIT: f64 = 1e-3;

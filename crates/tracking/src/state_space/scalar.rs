@@ -14,19 +14,22 @@ use binnacle_compass::azimuth::Azimuth;
 use binnacle_compass::model::Parameters;
 use binnacle_compass::ship::PARAMETERS;
 
-/// Gyro's share of the reference heading where both are read: the noise that is new in every
-/// row is least.
-const GYRO_SHARE: f64 = 0.7;
+/// Gyro's share of the reference heading where both are read. Assumed: a satellite compass has
+/// half as much again of the noise that is new in every row, so that this mean has the least.
+pub(crate) const GYRO_SHARE: f64 = 0.7;
 /// Reference's part of the noise that is new in a row. One part for all rows: where readings are
 /// rounded, their errors last, and a part by each row's noise would take them for magnetism.
+/// Assumed: a little less than half of the noise is the reference's.
 const REFERENCE_PART: f64 = 0.4;
 /// Least change of an innovation by that of the compass's reading: no compass is steered by
 /// where it is less.
 const LEAST_PER_COMPASS: f64 = 0.1;
-/// Standard deviation of a reading that says nothing, degrees.
+/// Standard deviation of a reading that says nothing, degrees. Assumed: as large as deviations of
+/// ships that were never adjusted.
 pub(crate) const SAYS_NOTHING_DEG: f64 = 20.0;
 
-/// Greatest speed across the heading over the speed over ground.
+/// Greatest speed across the heading over the speed over ground: beyond 45° of drift angle a ship
+/// drifts rather than sails.
 const MOST_ACROSS: f64 = 0.7;
 /// States that set the ship to the east, and to the north.
 const SETS_EAST: [usize; 3] = [CURRENT, LEEWAY, STEADY];

@@ -74,9 +74,10 @@ pub(crate) const LEEWAY: usize = REFERENCE + 5;
 /// Steady drift by prevailing winds and residual currents to the east and to the north, knots.
 pub(crate) const STEADY: usize = REFERENCE + 7;
 
-/// Memories of retained magnetism, seconds (DOMAIN: hours to days).
+/// Memories of retained magnetism, seconds: hours to days on a steady course (NGA Pub. 226).
 pub(crate) const RETENTION_S: [f64; 2] = [4.0 * 3600.0, 16.0 * 3600.0];
-/// Heeling field of a usual ship, nT per radian of heel.
+/// Heeling field of a usual ship, nT per radian of heel. Assumed: an eighth of the earth's vertical
+/// field in mid-latitudes.
 pub(crate) const HEEL_NT_PER_RAD: f64 = 5000.0;
 /// Unit of the list's field, nT.
 pub(crate) const LIST_NT: f64 = 100.0;

@@ -11,40 +11,41 @@ use binnacle_analysis::estimate::{
 };
 use binnacle_compass::ship::PARAMETERS;
 
-/// Time for which the drift level holds, seconds.
-const DRIFT_S: f64 = 30.0 * 86_400.0;
-/// Memory of an unmeasured list, seconds.
+/// Time for which the drift level holds, seconds: the unit of that level.
+pub(crate) const DRIFT_S: f64 = 30.0 * 86_400.0;
+/// Memory of an unmeasured list, seconds. Assumed: tanks are trimmed every other day.
 const LIST_S: f64 = 2.0 * 86_400.0;
-/// Memory of a gyro that settles, seconds.
+/// Memory of a gyro that settles, seconds. Assumed: it is right again within a watch.
 pub(crate) const SETTLING_S: f64 = 5400.0;
-/// Memory of friction on one course, seconds: the sea works the card loose.
+/// Memory of friction on one course, seconds. Assumed: the sea works the card loose.
 const FRICTION_S: f64 = 6.0 * 3600.0;
-/// Change of course from which the card's friction is another, degrees.
+/// Change of course from which the card's friction is another, degrees. Assumed: many times the
+/// friction itself.
 const RESEATED_DEG: f64 = 5.0;
-/// Change of course that kicks the gyro, degrees, and the kick over the swing's level.
+/// Change of course that kicks the gyro, degrees, and the kick over the swing's level. Assumed: a
+/// ballistic error of a degree after a manoeuvre, some times that of a steady course.
 const KICK_DEG: f64 = 20.0;
 const KICK: f64 = 2.0;
-/// Greatest time since a turn when the ship has settled again, seconds.
+/// Greatest time since a turn when the ship has settled again, seconds. Assumed: a sample is ten
+/// minutes on a steady course, after some minutes of turn.
 const SETTLED_S: f64 = 900.0;
-/// Memory and standard deviation of a local anomaly as the ship passes it, where H is usual.
-const ANOMALY_S: f64 = 4500.0;
-const ANOMALY_DEG: f64 = 2.5;
 /// Drift of the induced parameters over the population, for a drift of (bx, by) of the
-/// population's size.
+/// population's size. Assumed: soft iron changes less than permanent magnetism.
 const INDUCED_SHARE: f64 = 0.3;
 /// Memory of the current, which is smooth: tidal streams turn in six hours (Bowditch, The
 /// American Practical Navigator, "Tides and tidal currents"), streams and eddies change within
 /// tens of miles.
 const CURRENT_S: f64 = 6.0 * 3600.0;
 const CURRENT_NM: f64 = 60.0;
-/// Memory of the drift by the wind: weather systems pass in days.
+/// Memory of the drift by the wind. Assumed: weather systems pass in days.
 const LEEWAY_S: f64 = 36.0 * 3600.0;
 /// Memory of the drift by prevailing winds and residual currents, a season, and its size: general
 /// currents of the oceans run at 0.3 to 1 knot (Bowditch, "Ocean currents"), on some routes with
 /// the ship and on some against her.
 const STEADY_S: f64 = 60.0 * 86_400.0;
 pub(crate) const STEADY_KN: f64 = 0.3;
-/// Constant error of one reference against another of its kind, degrees.
+/// Constant error of one reference against another of its kind, degrees: 0.75° of each (IMO
+/// A.424(XI)), √2 of it.
 const NEW_REFERENCE_DEG: f64 = 1.0;
 
 /// Transition over one step.
@@ -207,9 +208,9 @@ impl Transition {
     }
 
     /// Replaces the variation's noise by that of a storm or an anomaly.
-    pub(crate) fn disturb(&mut self, seconds: f64, memory_s: f64, sd_deg: f64) {
+    pub(crate) fn disturb(&mut self, memories: f64, sd_deg: f64) {
         self.added[VARIATION] = 0.0;
-        self.fade(VARIATION, seconds / memory_s, sd_deg);
+        self.fade(VARIATION, memories, sd_deg);
     }
 
     /// Lets (bx, by) grow steadily for some days.
@@ -250,8 +251,8 @@ impl Transition {
     }
 
     /// Lets a local anomaly come and go smoothly.
-    pub(crate) fn pass_anomaly(&mut self, seconds: f64) {
-        self.anomaly = Some(smooth(ANOMALY, seconds / ANOMALY_S, ANOMALY_DEG));
+    pub(crate) fn pass_anomaly(&mut self, memories: f64, sd_deg: f64) {
+        self.anomaly = Some(smooth(ANOMALY, memories, sd_deg));
     }
 }
 

@@ -1,16 +1,14 @@
 //! Errors of reference, card and chart in the mean of a course, by the levels that were learnt.
 
 use super::residual::Residual;
+use crate::state_space::states::USUAL_H_NT;
+use crate::state_space::transition::DRIFT_S;
 use binnacle_analysis::estimate::{COMPASS_SWING_S, SATELLITE_S, SLOW_GYRO_S};
 use binnacle_compass::result::{Epoch, NoiseLevels, PredictionCoverage};
 use binnacle_compass::time::Timestamp;
 
-/// Horizontal field for which the variation's error is given, nT.
-const USUAL_H_NT: f64 = 24_000.0;
 /// Memory of a gyro's Schuler swing, seconds: its period over 2π and the damping of 0.2.
 const SCHULER_S: f64 = 84.4 * 60.0 / (std::f64::consts::TAU * 0.2);
-/// Time for which the drift level holds, seconds.
-const DRIFT_S: f64 = 30.0 * 86_400.0;
 /// Windows of ten seconds in a full row.
 const FULL_WINDOWS: f64 = 60.0;
 

@@ -1,14 +1,11 @@
 //! Events that have become certain, and what is detected of them.
 
-use super::limits::{IMPROBABLE, ROW_S, SETTLED_S};
 use super::records::{Class, Detected, EventPosterior};
 use super::tracker::Tracker;
+use crate::constants::{IMPROBABLE, ROW_S, SETTLED_S, WITHDRAWN};
 use crate::hypotheses::hypothesis::{Event, Hypothesis, Supposed};
 use crate::hypotheses::kinds::Kind;
 use binnacle_compass::time::Timestamp;
-
-/// Posterior probability below which a detected event is withdrawn.
-const WITHDRAWN: f64 = 0.3;
 
 /// Marginals of the posterior over events.
 struct Marginals<'a> {

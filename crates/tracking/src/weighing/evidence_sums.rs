@@ -5,28 +5,23 @@
 //! them, nearly: the filter takes up some of it meanwhile. That is enough to propose an event;
 //! it is judged by a filter of its own.
 
-use super::limits::WEEK_ROWS;
+use crate::constants::{LARGEST_SD, WEEK_ROWS, WIDER_COST};
 use crate::hypotheses::hypothesis::Read;
 use crate::hypotheses::kinds::{Jump, Kind, KindRow};
 use crate::state_space::filter::Innovation;
 use crate::state_space::row::Row;
-use crate::state_space::scalar::{Silent, gyro_share};
+use crate::state_space::scalar::{SAYS_NOTHING_DEG, Silent, gyro_share};
 use crate::state_space::states::{ALIGNMENT, BX, BY, GYRO, SATELLITE, SETTLING};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 /// States whose jumps are looked for.
 pub(crate) const WATCHED: [usize; 5] = [BX, BY, ALIGNMENT, GYRO, SATELLITE];
-/// Cost in squares of taking the noise for a disturbance's: twice the logarithm of the ratio of
-/// standard deviations.
-const WIDER_COST: f64 = 2.0;
-/// Cost of a reading that says nothing against one of a quarter of a degree, without what
-/// [`WIDER_COST`] has of it.
-const ANY_HEADING_COST: f64 = 3.3;
-/// Largest square of an innovation that counts as a disturbance: a wild reading is no more.
-const LARGEST_SQUARE: f64 = 18.0;
-/// Largest innovation that counts for a jump, standard deviations.
-const LARGEST_SD: f64 = 6.0;
+/// Cost of a reading that says nothing against a sound one of a quarter of a degree, without what
+/// [`WIDER_COST`] has of it: the logarithm of their standard deviations' ratio.
+fn any_heading_cost() -> f64 {
+    (4.0 * SAYS_NOTHING_DEG).ln() - 0.5 * WIDER_COST
+}
 const SUMS: usize = WATCHED.len();
 
 /// Sums from the first row on.
@@ -74,12 +69,12 @@ impl EvidenceSums {
                 self.information[i][j] += load[i] * load[j] * weight;
             }
         }
-        let square = z_squared.min(LARGEST_SQUARE);
+        let square = z_squared.min(0.5 * LARGEST_SD * LARGEST_SD);
         let usual = self.usual.unwrap_or(1.0);
         self.usual = Some(usual + (square - usual) / (2 * WEEK_ROWS) as f64);
         let excess = square - usual - WIDER_COST;
         self.excess += excess;
-        0.5 * excess - ANY_HEADING_COST
+        0.5 * excess - any_heading_cost()
     }
 
     /// Returns the sums since an earlier time.

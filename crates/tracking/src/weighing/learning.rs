@@ -1,6 +1,6 @@
 //! Learning of a ship's levels by the slope of the likelihood.
 
-use super::limits::{DAY_ROWS, WEEK_ROWS};
+use crate::constants::{DAY_ROWS, MOST_KNOWN, MOST_TAUGHT, NUDGE, TURNS, WEEK_ROWS};
 use crate::hypotheses::hypothesis::Hypothesis;
 use crate::state_space::filter::Filter;
 use crate::state_space::levels::{LEVELS, Level, Levels};
@@ -8,17 +8,6 @@ use crate::state_space::row::Row;
 use crate::state_space::transition::Transition;
 use binnacle_compass::azimuth::Azimuth;
 use serde::{Deserialize, Serialize};
-
-/// Change of a level's logarithm by which the slope is taken, and the greatest step of it for one
-/// row.
-const NUDGE: f64 = 0.05;
-/// Greatest knowledge of a level's logarithm, one over its variance: habits change.
-const MOST_KNOWN: f64 = 400.0;
-/// Most that one row teaches: as much as two readings of the level itself.
-const MOST_TAUGHT: f64 = 4.0;
-
-/// Number of days among which the brief levels are shared once a ship is known.
-const TURNS: usize = 4;
 
 /// Levels with what is known of them.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -1,12 +1,10 @@
 //! Logbook entries as hypotheses.
 
 use super::tracker::Tracker;
+use crate::constants::TRUSTED;
 use crate::hypotheses::hypothesis::Begin;
 use crate::hypotheses::kinds::{KINDS, Kind};
 use binnacle_compass::logbook::LogbookKind;
-
-/// Probability that a ship is as before once the logbook says that her cargo is ashore.
-const DISCHARGED: f64 = 0.9;
 
 impl Tracker {
     /// Takes note of a logbook entry since the last row.
@@ -61,8 +59,8 @@ impl Tracker {
                 .iter()
                 .rposition(|e| e.kind == Kind::Cargo && e.until.is_none());
             if let Some(event) = lasting {
-                more.push(hypothesis.with_end(event, &begin, DISCHARGED.ln()));
-                hypothesis.log_prior += (1.0 - DISCHARGED).ln();
+                more.push(hypothesis.with_end(event, &begin, TRUSTED.ln()));
+                hypothesis.log_prior += (1.0 - TRUSTED).ln();
             }
         }
         self.bank.extend(more);

@@ -3,7 +3,6 @@
 mod detected;
 mod evidence_sums;
 mod learning;
-mod limits;
 mod logged;
 mod proposals;
 pub(crate) mod records;

@@ -1,20 +1,14 @@
 //! Proposals of events where innovations suggest them.
 
-use super::limits::{BETTER, DAY_ROWS, ROW_S, UNCERTAIN};
 use super::records::Tried;
 use super::tracker::Tracker;
+use crate::constants::{BETTER, DAY_ROWS, ROW_S, STARTS, STOOD_DEG, TURNED_DEG, UNCERTAIN};
 use crate::hypotheses::hypothesis::{Begin, Hypothesis};
 use crate::hypotheses::kinds::{KINDS, Kind, KindRow};
 use crate::state_space::row::Row;
 use crate::state_space::transition::Transition;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::time::Timestamp;
-
-/// Starts of an event between rows that are weighed at a time.
-const STARTS: usize = 2;
-/// Greatest turn of an instrument that stood, and least of a ship that turned, degrees.
-const STOOD_DEG: f64 = 2.0;
-const TURNED_DEG: f64 = 10.0;
 
 /// Start of an event.
 #[derive(Clone, Copy, Debug)]

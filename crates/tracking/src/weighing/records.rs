@@ -1,13 +1,11 @@
 //! Records that the tracker keeps: where it could begin again, and what it weighed and detected.
 
 use super::evidence_sums::EvidenceSums;
+use crate::constants::{CALLS_A_YEAR, FALSE_ALARMS_A_YEAR};
 use crate::hypotheses::hypothesis::{Begin, Event, Hypothesis};
 use crate::hypotheses::kinds::{KINDS, Kind};
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
-
-/// Port calls of a usual ship, a year.
-const CALLS_A_YEAR: f64 = 50.0;
 
 /// Filter after some row, with the sums until then.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -59,17 +57,7 @@ impl Class {
         let a_year: f64 = of_class
             .map(|row| row.a_year + row.a_call * CALLS_A_YEAR)
             .sum();
-        1.0 - self.false_alarms_a_year() / a_year
-    }
-
-    /// Returns the false alarms that are allowed, a year: a ship's master who is called often
-    /// for nothing does not come.
-    fn false_alarms_a_year(self) -> f64 {
-        match self {
-            Class::Ship => 0.08,
-            Class::Reference | Class::Passing => 0.1,
-            Class::Compass => 0.02,
-        }
+        1.0 - FALSE_ALARMS_A_YEAR[self as usize] / a_year
     }
 }
 

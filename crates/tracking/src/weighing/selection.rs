@@ -1,19 +1,16 @@
 //! Selection of hypotheses: the lead, those that are dropped, and those that are merged.
 
-use super::limits::{
-    BETTER, DAY_ROWS, GIVEN_UP, HOUR_ROWS, IMPROBABLE, MOST_HYPOTHESES, OUTDATED_S, SAME_S,
+use super::tracker::Tracker;
+use crate::constants::{
+    ALIKE, BETTER, DAY_ROWS, GIVEN_UP, HOUR_ROWS, IMPROBABLE, MOST_HYPOTHESES, OUTDATED_S, SAME_S,
     SETTLED_S, SIMPLER_GIVEN_UP, WEEK_ROWS,
 };
-use super::tracker::Tracker;
 use crate::hypotheses::hypothesis::{Hypothesis, Supposed};
 use crate::hypotheses::kinds::{Ending, Kind};
 use crate::state_space::filter::Filter;
 use crate::state_space::states::STATES;
 use binnacle_compass::time::Timestamp;
 use std::sync::Arc;
-
-/// Difference of means in standard deviations up to which two hypotheses are alike.
-const ALIKE: f64 = 0.4;
 
 impl Tracker {
     /// Drops events that are settled from every hypothesis: hypotheses that differ in nothing
@@ -28,7 +25,7 @@ impl Tracker {
                 let judged_s = match event.kind.row().ending {
                     _ if event.until.is_some() => SETTLED_S,
                     Ending::Never => SETTLED_S,
-                    Ending::InPort(_) => OUTDATED_S,
+                    Ending::InPort { .. } => OUTDATED_S,
                     Ending::After(_) | Ending::AfterMiles(_) => f64::INFINITY,
                 };
                 age_s <= judged_s

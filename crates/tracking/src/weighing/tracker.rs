@@ -2,8 +2,10 @@
 
 use super::evidence_sums::EvidenceSums;
 use super::learning::Learning;
-use super::limits::{ALTERNATIVES, CERTAIN, DAY_ROWS, HOUR_ROWS, KEPT_ROWS, NEGLIGIBLE, UNCERTAIN};
 use super::records::{Checkpoint, Detected, Tried};
+use crate::constants::{
+    ALTERNATIVES, CERTAIN, DAY_ROWS, HOUR_ROWS, KEPT_ROWS, LOOK_ROWS, NEGLIGIBLE, SAME_S, UNCERTAIN,
+};
 use crate::hypotheses::hypothesis::{Begin, Hypothesis, Read};
 use crate::hypotheses::kinds::{Kind, Stay};
 use crate::hypotheses::starts::starts;
@@ -15,11 +17,6 @@ use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_compass::azimuth::Azimuth;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
-
-/// Rows between looks for events.
-const LOOK_ROWS: usize = 2;
-/// Greatest time between an azimuth and the row in whose circumstances it is read, seconds.
-const AZIMUTH_NEAR_S: f64 = 6.0 * 3600.0;
 
 /// Accounts of what happened to a ship, by the rows so far.
 #[derive(Serialize, Deserialize)]
@@ -113,7 +110,7 @@ impl Tracker {
         let Some(row) = self.rows.back().cloned() else {
             return false;
         };
-        if azimuth.time().seconds_since(row.time).abs() > AZIMUTH_NEAR_S {
+        if azimuth.time().seconds_since(row.time).abs() > SAME_S {
             return false;
         }
         for hypothesis in &mut self.bank {

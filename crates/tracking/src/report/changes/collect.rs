@@ -4,6 +4,7 @@ use super::detected::change;
 use super::evidence::Facts;
 use super::logged_work::{has_both_sides, logged_change};
 use super::size::{Disturbance, Sides, disturbance};
+use crate::constants::{DAY_S, SAME_S};
 use crate::hypotheses::kinds::Kind;
 use crate::report::causes::{likeliest_cause, reported};
 use crate::report::epochs::{Boundaries, Span, begins_an_epoch};
@@ -18,10 +19,6 @@ use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Cause, Change, Epoch};
 use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
-
-const DAY_S: f64 = 86_400.0;
-/// Time from a discharge in the logbook within which a change in port is of it, seconds.
-const DISCHARGED_WITHIN_S: f64 = 6.0 * 3600.0;
 
 /// Everything that changes are made of.
 pub(crate) struct Findings<'a> {
@@ -185,8 +182,7 @@ impl Findings<'_> {
         }
         let latest = self.times.next(event.from).unwrap_or(event.from);
         let is_then = |time: Timestamp| {
-            event.from.seconds_since(time) < DISCHARGED_WITHIN_S
-                && latest.seconds_since(time) > -DISCHARGED_WITHIN_S
+            event.from.seconds_since(time) < SAME_S && latest.seconds_since(time) > -SAME_S
         };
         let cargo = || {
             let entries = self.logbook.iter();

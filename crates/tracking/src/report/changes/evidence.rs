@@ -1,21 +1,11 @@
 //! Evidence of a change, in words that an officer knows.
 
 use super::size::Disturbance;
+use crate::constants::{IMPROBABLE, TRUSTED};
 use crate::hypotheses::kinds::Kind;
 use crate::report::faults::{FaultyReference, reference};
 use crate::weighing::records::{Class, Detected, EventPosterior};
 use binnacle_compass::time::Timestamp;
-
-/// Probability from which the posterior says whether an event began in port.
-const CLEAR: f64 = 0.9;
-/// Error from which it is mentioned, degrees where H is 24 µT.
-const MENTIONED_ERROR_DEG: f64 = 8.0;
-/// Error from which a compass no longer points north, degrees.
-const POINTLESS_DEG: f64 = 90.0;
-/// Smallest drift that is given, degrees: a smaller figure would read as none.
-const SMALLEST_DRIFT_DEG: f64 = 0.1;
-/// Probability from which a possible end is mentioned.
-const MENTIONED_END: f64 = 0.02;
 
 /// Facts about a change beside its posterior.
 #[allow(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
@@ -170,11 +160,9 @@ fn likelier(probability: f64, other: f64) -> String {
 
 /// Returns the extent of a drift.
 fn drifted(worst_deg: f64) -> String {
-    if worst_deg < SMALLEST_DRIFT_DEG {
-        return format!(
-            "the deviation varies, and is now within {SMALLEST_DRIFT_DEG:.1} degrees of its \
-             earlier value"
-        );
+    if worst_deg < 0.1 {
+        return "the deviation varies, and is now within 0.1 degrees of its earlier value"
+            .to_owned();
     }
     format!("the deviation continues to change, by up to {worst_deg:.1} degrees so far")
 }
@@ -192,9 +180,9 @@ fn beginning(detected: &Detected) -> Option<String> {
     }
     let posterior = &detected.posterior;
     let in_port = posterior.in_port / posterior.probability.max(f64::MIN_POSITIVE);
-    let line = if in_port > CLEAR {
+    let line = if in_port > TRUSTED {
         "it began at a port call"
-    } else if in_port < 1.0 - CLEAR {
+    } else if in_port < 1.0 - TRUSTED {
         "it began at sea"
     } else {
         "it may have begun at the port call before, where cargo is loaded, or at sea"
@@ -212,7 +200,7 @@ fn ending(detected: &Detected, facts: &Facts) -> Option<String> {
             Some("the vessel returned to its earlier state at a port call".to_owned())
         }
         (Some(false), _) => Some("the vessel returned to its earlier state at sea".to_owned()),
-        (None, Some(end)) if detected.posterior.is_over > MENTIONED_END => Some(format!(
+        (None, Some(end)) if detected.posterior.is_over > IMPROBABLE => Some(format!(
             "it may have ended at the port call before {end}: {:.0} %",
             100.0 * detected.posterior.is_over
         )),
@@ -225,9 +213,9 @@ fn size(detected: &Detected, facts: &Facts) -> Vec<String> {
     let mut lines = Vec::new();
     let large = facts
         .disturbance
-        .filter(|disturbance| disturbance.nominal_deg > MENTIONED_ERROR_DEG);
+        .filter(|disturbance| disturbance.nominal_deg > Kind::FailedCard.row().error_deg);
     if let Some(Disturbance { seen_deg, .. }) = large {
-        lines.push(if seen_deg > POINTLESS_DEG {
+        lines.push(if seen_deg > 90.0 {
             format!("the error was {seen_deg:.0} degrees: the compass no longer pointed north")
         } else {
             format!("the error was {seen_deg:.0} degrees, which few storms and anomalies reach")

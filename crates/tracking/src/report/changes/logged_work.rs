@@ -1,14 +1,12 @@
 //! Changes by work in the logbook.
 
 use super::size::Sides;
+use crate::constants::HOUR_S;
 use crate::report::epochs::Span;
 use crate::report::voyage::LoggedWork;
 use binnacle_compass::result::{Cause, CauseProbability, Change};
 use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
-
-/// Smallest difference of times that is reported, seconds.
-const SAME_TIME_S: f64 = 3600.0;
 
 /// Returns the change of work that begins an epoch; `at` is its date by the samples. Without a
 /// ship on both sides it has no size.
@@ -23,7 +21,7 @@ pub(super) fn logged_change(
         work.kind.description()
     )];
     let later_s = at.seconds_since(work.at);
-    if later_s.abs() > SAME_TIME_S {
+    if later_s.abs() > HOUR_S {
         let side = if later_s > 0.0 { "later" } else { "earlier" };
         evidence.push(format!(
             "by the samples it was done {:.0} hours {side} than the logbook says",

@@ -1,17 +1,16 @@
 //! Size of a change: a step of magnetism and of deviation, or the error of a disturbance.
 
+use crate::constants::SMALLER_SHARE;
 use crate::state_space::ship_state::ShipState;
+use crate::state_space::states::USUAL_H_NT;
 use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::result::Step;
 use binnacle_compass::ship::{EarthField, PARAMETERS, compass_rad, wrap_pi};
 
+/// Number of headings at which a change is evaluated.
 const HEADINGS: u32 = 36;
-/// Horizontal field for which disturbances are given in degrees, nT.
-const USUAL_H_NT: f64 = 24_000.0;
-/// Share of the readings with a smaller error: the largest are wild readings.
-const SMALLER_SHARE: f64 = 0.75;
 
 /// Ship on both sides of a change.
 #[derive(Clone, Copy)]

@@ -1,5 +1,6 @@
 //! Boundaries between epochs: work in the logbook, and changes of the ship by the samples.
 
+use crate::constants::DAY_S;
 use crate::report::causes::likeliest_cause;
 use crate::report::row_times::RowTimes;
 use crate::report::voyage::LoggedWork;
@@ -8,10 +9,6 @@ use crate::weighing::records::{Class, Detected};
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::result::Cause;
 use binnacle_compass::time::Timestamp;
-
-/// Greatest error of the logbook's time for work, seconds: people write down when they
-/// noticed, or what was planned.
-const MISTIMED_S: f64 = 86_400.0;
 
 /// Boundary between two epochs.
 #[derive(Clone, Copy)]
@@ -103,7 +100,7 @@ impl<'a> Boundaries<'a> {
             before_s.max(work.at.seconds_since(latest)).max(0.0)
         };
         let works = self.list.iter_mut().filter(|b| b.work.is_some());
-        let near = works.filter(|work| apart_s(work) < MISTIMED_S);
+        let near = works.filter(|work| apart_s(work) < DAY_S);
         let Some(work) = near.min_by(|a, b| apart_s(a).total_cmp(&apart_s(b))) else {
             return false;
         };

@@ -4,6 +4,7 @@
 //! Σ w l·x over the weights, and noise. The sum's covariance with the states goes along from row
 //! to row, so that the variance of the mean is exact, whatever memories the errors have.
 
+use crate::constants::NEGLIGIBLE;
 use crate::hypotheses::hypothesis::Hypothesis;
 use crate::state_space::arrays::vector;
 use crate::state_space::filter::{Filter, Innovation};
@@ -14,9 +15,6 @@ use crate::state_space::states::{ALIGNMENT, STATES, dot};
 use crate::state_space::transition::{Pair, Transition};
 use binnacle_compass::ship::PARAMETERS;
 use serde::{Deserialize, Serialize};
-
-/// Log weight below the best's from which a hypothesis is left out of the mixture.
-const NEGLIGIBLE: f64 = 7.0;
 
 /// Slopes of a deviation by the ship's parameters, over the population, and the alignment, a
 /// degree.
