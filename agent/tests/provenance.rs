@@ -4,16 +4,18 @@
 
 mod common;
 
+use binnacle_nmea::sentence::ThsMode;
 use binnacle_nmea::{Data, parse};
 use common::agent::Agent;
-use common::bridge::{self, Bridge, changed};
+use common::bridge::{self, Bridge, changed, sentence};
 use common::server::TestServer;
 use common::{at_end, status};
 use futures_util::{SinkExt, StreamExt};
 use serde_json::{Value, json};
 use std::time::Duration;
-use tokio::net::TcpListener;
-use tokio::time::{interval, timeout};
+use tokio::io::{AsyncBufReadExt, AsyncWriteExt, BufReader};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::time::{Instant, interval, timeout};
 use tokio_tungstenite::accept_async;
 use tokio_tungstenite::tungstenite::Message;
 
@@ -231,4 +233,77 @@ async fn what_a_server_repeats_on_connect_is_no_reading_of_now() {
     let alive_again = async { while status(&running).await["heading"]["compass_deg"].is_null() {} };
     timeout(PATIENCE, alive_again).await.unwrap();
     running.kill().await;
+}
+
+/// A compass and its repeater, which drops the deviation and latches the last heading; later a
+/// compass sends in the repeater's name.
+async fn latch_and_move(role: &str) {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let server = TestServer::start(Some(common::model()), None).await;
+    let agent = Agent::new(listener.local_addr().unwrap());
+    let config = std::fs::read_to_string(agent.config()).unwrap();
+    let old = "compass = [{ input = \"bridge\", talker = \"HC\", sentence = \"HDG\" }]";
+    std::fs::write(agent.config(), config.replace(old, role)).unwrap();
+    agent.enrol(&server.url).await;
+    let running = agent.run().await;
+    let (mut line, _) = listener.accept().await.unwrap();
+    let output = TcpStream::connect(running.output).await.unwrap();
+    let mut lines = BufReader::new(output).lines();
+    let mut ticks = interval(Duration::from_millis(100));
+    let (mut tenths, mut valid): (u32, u32) = (0, 0);
+    let mut heading_deg = 90.0;
+    let mut died: Option<Instant> = None;
+    let returned = async {
+        loop {
+            let silent = died.map(|died| died.elapsed());
+            tokio::select! {
+                _ = ticks.tick() => {
+                    tenths += 1;
+                    // The silence limit is three seconds.
+                    if silent.is_none_or(|silent| silent > Duration::from_secs(7)) {
+                        heading_deg = 90.0 + f64::from(tenths % 7) * 0.3;
+                    }
+                    if died.is_none() {
+                        line.write_all(&sentence(&format!("HCHDG,{heading_deg:.1},,,,"))).await.unwrap();
+                    }
+                    for said in [
+                        format!("SDHDG,{heading_deg:.1},,,,"),
+                        "GPRMC,120000,A,4330.0,N,00300.0,W,12.0,90.0,010926,,".to_owned(),
+                    ] {
+                        line.write_all(&sentence(&said)).await.unwrap();
+                    }
+                    if valid > 40 && died.is_none() {
+                        died = Some(Instant::now());
+                    }
+                }
+                heard = lines.next_line() => {
+                    let heard = heard.unwrap().unwrap() + "\r\n";
+                    let Ok(sentence) = parse(heard.as_bytes()) else { continue };
+                    let Data::Ths(ths) = sentence.data else { continue };
+                    if ths.mode != ThsMode::Estimated {
+                        continue;
+                    }
+                    valid += 1;
+                    match silent.map(|silent| silent.as_secs_f64()) {
+                        Some(silent_s) if silent_s > 7.0 => return,
+                        Some(silent_s) => assert!(silent_s < 2.5, "{role}: {silent_s}"),
+                        None => {}
+                    }
+                }
+            }
+        }
+    };
+    timeout(PATIENCE, returned).await.unwrap();
+    running.kill().await;
+}
+
+#[tokio::test]
+async fn a_repeater_of_a_dead_compass_is_no_compass_until_it_moves_by_itself() {
+    tokio::join!(
+        latch_and_move(
+            "compass = [{ input = \"bridge\", talker = \"HC\", sentence = \"HDG\" }, \
+             { input = \"bridge\", talker = \"SD\", sentence = \"HDG\" }]",
+        ),
+        latch_and_move("compass = [{ input = \"bridge\", sentence = \"HDG\" }]"),
+    );
 }

@@ -13,6 +13,7 @@ mod readings;
 mod role;
 mod roles;
 mod stated_clock;
+mod succession;
 mod two_sensors;
 
 pub use clock_checkpoint::ClockCheckpoint;

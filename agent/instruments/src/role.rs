@@ -5,8 +5,11 @@
 //! - A selection is used while no better one has been heard within the silence limit.
 //! - Of several devices that match a selection, one is used while it is heard, the first by its
 //!   name. All are named, and their readings are never mixed.
+//! - In place of a better source that is silent, a heading is used once it has moved by itself: a
+//!   repeater goes on saying the last one.
 
 use super::own_output::AGENT_TALKER;
+use super::succession::Succession;
 use super::two_sensors::TwoSensors;
 use crate::config::SourceConfig;
 use binnacle_compass::sample::SourceId;
@@ -27,6 +30,9 @@ pub(super) struct Role {
     stale_s: f64,
     /// Devices that have served, in the order of their first readings.
     served: Vec<Source>,
+    /// Device that has served last.
+    in_use: Option<Source>,
+    succession: Succession,
     /// Headings that the agent itself sends.
     own_headings: Vec<([u8; 2], [u8; 3])>,
 }
@@ -94,6 +100,8 @@ impl Role {
             selections: selections.collect(),
             stale_s,
             served: Vec::new(),
+            in_use: None,
+            succession: Succession::default(),
             own_headings: vec![(AGENT_TALKER, *b"HDG"), (AGENT_TALKER, *b"THS")],
         }
     }
@@ -134,6 +142,9 @@ impl Role {
         if !self.is_recent(moment) {
             return Use::None;
         }
+        if heading_deg.is_some_and(|degrees| !self.may_serve(rank, &seen.source, moment, degrees)) {
+            return Use::None;
+        }
         let changes = match self.choose_device(rank, &seen.source, moment) {
             Choice::Other => return Use::None,
             Choice::Taken => true,
@@ -150,10 +161,42 @@ impl Role {
             return Use::None;
         }
         self.note_served(&seen.source);
+        if self.in_use.as_ref() != Some(&seen.source) {
+            self.in_use = Some(seen.source.clone());
+        }
         if changes || difference_deg.is_some() {
             return Use::Mixed;
         }
         Use::Used(id)
+    }
+
+    /// Returns whether a heading may be used unless a better one is alive: in place of one that is
+    /// silent, once it has moved by itself.
+    fn may_serve(
+        &mut self,
+        rank: usize,
+        source: &Source,
+        moment: Moment,
+        heading_deg: f64,
+    ) -> bool {
+        let in_use = self.in_use.as_ref();
+        if in_use.is_some_and(|device| device.is_same_device(source)) {
+            return true;
+        }
+        let selection = &self.selections[rank];
+        let before = selection.device.as_ref();
+        let is_first = before.is_none_or(|device| device.device_order(source).is_ge());
+        if rank == 0 && is_first {
+            return true;
+        }
+        let is_better_alive =
+            !self.is_best(rank, moment) || (!is_first && self.is_alive(selection.heard, moment));
+        if is_better_alive {
+            self.succession.note_better(source);
+            return true;
+        }
+        self.succession
+            .has_moved(source, heading_deg, moment.measured)
     }
 
     /// Chooses between the device in use and that of a reading.
@@ -250,8 +293,20 @@ impl Role {
             .position(|selection| selection.matches_device(source))
     }
 
-    /// Describes the selections that match more than one sensor.
+    /// Describes the sources that may be repeaters, and the selections that match more than one
+    /// sensor.
     pub(super) fn problems(&self, now: Moment) -> impl Iterator<Item = String> {
+        let still = self.succession.still(now.measured).map(|source| {
+            format!(
+                "{}: {source} stands in for a better source that is silent, and is not used until \
+                 it moves by itself: it may repeat the last heading",
+                self.name
+            )
+        });
+        still.chain(self.mixed(now))
+    }
+
+    fn mixed(&self, now: Moment) -> impl Iterator<Item = String> {
         self.selections.iter().flat_map(move |selection| {
             let device = selection
                 .device

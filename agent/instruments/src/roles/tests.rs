@@ -68,7 +68,22 @@ fn the_second_gyro_serves_while_the_first_is_silent() {
     assert_eq!(first(&mut roles, &main), gyro(10.0, "a HE THS"));
     assert_eq!(first(&mut roles, &spare), None);
     first(&mut roles, &seen("a", "GPRMC", fix(16)));
+    // It may be a repeater of the first: once it has moved by itself it is not.
+    assert_eq!(first(&mut roles, &spare), None);
+    let problems = roles.problems(Instant::now(), Duration::from_mins(1));
+    assert!(
+        problems[0].starts_with("gyro: b HEHDT stands in"),
+        "{problems:?}"
+    );
+    for degrees in [11.1, 11.0] {
+        let moved = seen("b", "HEHDT", heading(degrees));
+        assert_eq!(first(&mut roles, &moved), None);
+    }
+    let moved = seen("b", "HEHDT", heading(11.1));
+    assert_eq!(first(&mut roles, &moved), gyro(11.1, "b HDT"));
     assert_eq!(first(&mut roles, &spare), gyro(11.0, "b HDT"));
+    let problems = roles.problems(Instant::now(), Duration::from_mins(1));
+    assert!(problems.is_empty(), "{problems:?}");
     assert_eq!(first(&mut roles, &main), gyro(10.0, "a HE THS"));
     assert_eq!(first(&mut roles, &spare), None);
 }
@@ -91,7 +106,11 @@ fn an_invalid_source_makes_way_at_once() {
     first(&mut roles, &seen("a", "GPRMC", fix(0)));
     first(&mut roles, &seen("a", "HETHS", heading(10.0)));
     first(&mut roles, &seen("a", "HETHS", Reading::TrueNotValid));
-    assert!(first(&mut roles, &seen("b", "HEHDT", heading(11.0))).is_some());
+    let spare = [11.0, 11.1, 11.0, 11.1].map(|degrees| {
+        let spare = seen("b", "HEHDT", heading(degrees));
+        first(&mut roles, &spare).is_some()
+    });
+    assert_eq!(spare, [false, false, false, true]);
 }
 
 #[test]
