@@ -79,9 +79,14 @@ impl Problem {
             Place::Bytes(span) => span.clone(),
             Place::Field(keys) => document.span_of(keys),
         };
+        let is_whole = span
+            .as_ref()
+            .is_none_or(|span| span.len() >= text.trim_end().len());
         let at = span.map_or(0, |span| span.start);
         let field = match &self.place {
             Place::Field(keys) => keys.iter().rev().find(|key| !is_number(key)).cloned(),
+            // Of the whole text no field is at fault, whatever it begins with.
+            Place::Bytes(_) if is_whole => None,
             // A missing field is named by the problem.
             Place::Bytes(_) => document.field_at(at).map(str::to_owned),
         };

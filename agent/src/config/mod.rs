@@ -234,6 +234,8 @@ stale_s = 15
             "agent.toml:3: ring_mb: 0.5 is neither 0 nor from 1 to 10000 megabytes"
         );
         assert!(message("").contains("data_dir"));
+        let wrong = WHOLE.trim_start().replace("data_dir = \"state\"\n", "");
+        assert_eq!(message(&wrong), "agent.toml:1: missing field `data_dir`");
     }
 
     #[test]
