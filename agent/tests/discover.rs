@@ -157,7 +157,8 @@ async fn a_signal_k_servers_sources_are_distinguished_by_name_and_age() {
             .clone()
     };
     assert_eq!(source("old.HC", "HDG")["age_s"], Value::Null);
-    assert_eq!(source("n2k.4", "HDM")["age_s"], 0.0);
+    let age_s = source("n2k.4", "HDM")["age_s"].as_f64();
+    assert!(age_s.is_some_and(|age_s| age_s < 1.0), "{age_s:?}");
     assert_eq!(source("n2k.9", "HDT")["last"], "true 080.2°");
     let roles = found["roles"].as_str().unwrap();
     let mut expected = "[roles]\n".to_owned();
