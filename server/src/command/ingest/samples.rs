@@ -60,7 +60,7 @@ pub async fn import_samples(
     now: Time,
     mut progress: impl FnMut(ImportedSamples),
 ) -> Result<ImportedSamples> {
-    let compass = compasses::find(db, import.vessel, import.compass).await?.id;
+    let compass = find_compass(db, import.vessel, import.compass).await?;
     let mut samples = import.samples;
     samples.sort_by_key(|sample| sample.time);
     let mut known = stored_samples(db, import.vessel, compass, &samples).await?;
@@ -87,6 +87,20 @@ pub async fn import_samples(
         progress(imported);
     }
     Ok(imported)
+}
+
+/// Finds a compass of the vessel, or its first one by default, and names what is not there.
+async fn find_compass(db: &Db, vessel: VesselId, compass: Option<CompassId>) -> Result<CompassId> {
+    let compasses = compasses::of_vessel(db, vessel).await?;
+    let Some(first) = compasses.first() else {
+        return Err(Error::BadRequest(format!("there is no vessel {vessel}")));
+    };
+    let compass = compass.unwrap_or(first.id);
+    if compasses.iter().any(|found| found.id == compass) {
+        return Ok(compass);
+    }
+    let text = format!("vessel {vessel} has no compass {compass}");
+    Err(Error::BadRequest(text))
 }
 
 /// Stores samples as the next batch of the compass's imports.

@@ -3,7 +3,7 @@
 use crate::run;
 use binnacle_compass::sample::Sample;
 use binnacle_fleet::alerts;
-use binnacle_platform::ids::VesselId;
+use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_server::command::{Import, ImportedSamples, import_samples};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::program::{assert_refused, samples_csv};
@@ -16,6 +16,7 @@ on_both!(
     imported_samples_are_analysed_like_uploaded_ones,
     an_import_repeated_or_overlapping_stores_nothing_twice,
     an_import_is_no_agent_that_falls_silent,
+    a_compass_that_the_vessel_does_not_have_is_named,
 );
 
 const DAY: &str = "2026-09-01T00:00:00Z";
@@ -99,6 +100,23 @@ async fn an_import_is_no_agent_that_falls_silent(server: TestServer) {
     server.finish().await;
 }
 
+async fn a_compass_that_the_vessel_does_not_have_is_named(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let compass = Uuid::from_u128(2);
+    let import = Import {
+        vessel: VesselId(nao.id.parse().unwrap()),
+        compass: Some(CompassId(compass)),
+        samples: passage(DAY, 10),
+    };
+    let now = server.app.clock.now().into();
+    let refused = import_samples(&server.app.db, import, now, |_| {}).await;
+    let refused = refused.unwrap_err().to_string();
+    let (vessel, compass) = (&nao.id, compass.to_string());
+    assert_eq!(refused, format!("vessel {vessel} has no compass {compass}"));
+    server.finish().await;
+}
+
 #[test]
 fn a_table_that_cannot_be_read_stops_the_command_before_anything_is_stored() {
     let folder = TempDir::new().unwrap();
@@ -113,9 +131,6 @@ fn a_vessel_that_is_not_there_is_named() {
     let folder = TempDir::new().unwrap();
     samples_csv(folder.path());
     let vessel = Uuid::from_u128(1).to_string();
-    let refused = run(
-        folder.path(),
-        &["import", "--vessel", &vessel, "samples.csv"],
-    );
-    assert_refused(&refused, &["compass"]);
+    let import = ["import", "--vessel", &vessel, "samples.csv"];
+    assert_refused(&run(folder.path(), &import), &["no vessel", &vessel]);
 }
