@@ -5,8 +5,9 @@
 //! - A selection is used while no better one has been heard within the silence limit.
 //! - Of several devices that match a selection, one is used while it is heard, the first by its
 //!   name. All are named, and their readings are never mixed.
-//! - In place of a better source that is silent, a heading is used once it has moved by itself: a
-//!   repeater goes on saying the last one.
+//! - When another source of a heading has fallen silent, one that has not moved by itself since is
+//!   not used: a repeater goes on saying the last heading. The first selection is excepted, while
+//!   one device alone matches it.
 
 use super::own_output::AGENT_TALKER;
 use super::succession::Succession;
@@ -170,8 +171,7 @@ impl Role {
         Use::Used(id)
     }
 
-    /// Returns whether a heading may be used unless a better one is alive: in place of one that is
-    /// silent, once it has moved by itself.
+    /// Returns whether a heading may be used unless a better one is alive.
     fn may_serve(
         &mut self,
         rank: usize,
@@ -181,7 +181,7 @@ impl Role {
     ) -> bool {
         let in_use = self.in_use.as_ref();
         if in_use.is_some_and(|device| device.is_same_device(source)) {
-            return true;
+            return self.may_stay(rank, source, moment, heading_deg);
         }
         let selection = &self.selections[rank];
         let before = selection.device.as_ref();
@@ -197,6 +197,27 @@ impl Role {
         }
         self.succession
             .has_moved(source, heading_deg, moment.measured)
+    }
+
+    /// Returns whether the device in use may stay so: it may be the repeater of another one of its
+    /// selection that has died.
+    fn may_stay(&mut self, rank: usize, source: &Source, moment: Moment, heading_deg: f64) -> bool {
+        let other = self.selections[rank].other.as_ref();
+        let Some(silent_s) = other.map(|(_, heard)| silence_s(*heard, moment)) else {
+            return true;
+        };
+        // What comes late, or settles, is not yet motion of its own.
+        if silent_s < self.stale_s / 2.0 {
+            self.succession.note_better(source);
+            return true;
+        }
+        let has_moved = self
+            .succession
+            .has_moved(source, heading_deg, moment.measured);
+        if has_moved {
+            self.selections[rank].other = None;
+        }
+        has_moved || silent_s <= self.stale_s
     }
 
     /// Chooses between the device in use and that of a reading.
@@ -265,17 +286,7 @@ impl Role {
     }
 
     fn is_alive(&self, heard: Option<Moment>, now: Moment) -> bool {
-        let Some(heard) = heard else {
-            return false;
-        };
-        // Recorded time runs fast, and GNSS time stands still when its receiver fails.
-        let passed = now.measured.saturating_duration_since(heard.measured);
-        let by_ship = match (heard.ship, now.ship) {
-            (Some(heard), Some(now)) => now.seconds_since(heard).abs() <= self.stale_s,
-            (None, None) => true,
-            _ => false,
-        };
-        by_ship && passed.as_secs_f64() <= self.stale_s
+        heard.is_some_and(|heard| silence_s(heard, now) <= self.stale_s)
     }
 
     /// Returns the rank of the selection that an observation matches.
@@ -298,8 +309,8 @@ impl Role {
     pub(super) fn problems(&self, now: Moment) -> impl Iterator<Item = String> {
         let still = self.succession.still(now.measured).map(|source| {
             format!(
-                "{}: {source} stands in for a better source that is silent, and is not used until \
-                 it moves by itself: it may repeat the last heading",
+                "{}: {source} has not moved by itself while another source is silent: it may repeat \
+                 the last heading, and is not used until it moves",
                 self.name
             )
         });
@@ -332,6 +343,18 @@ enum Choice {
     InUse,
     Taken,
     Other,
+}
+
+/// Returns the seconds since a reading: by both clocks, for recorded time runs fast, and GNSS time
+/// stands still when its receiver fails.
+fn silence_s(heard: Moment, now: Moment) -> f64 {
+    let passed = now.measured.saturating_duration_since(heard.measured);
+    let by_ship = match (heard.ship, now.ship) {
+        (Some(heard), Some(now)) => now.seconds_since(heard).abs(),
+        (None, None) => 0.0,
+        _ => f64::INFINITY,
+    };
+    by_ship.max(passed.as_secs_f64())
 }
 
 impl Selection {

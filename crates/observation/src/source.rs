@@ -84,10 +84,12 @@ impl Source {
             && self.n2k_address == other.n2k_address
     }
 
-    /// Returns the order of two devices, the same on every start.
+    /// Returns the order of two devices, the same on every start: magnetic compasses first, for
+    /// others repeat them.
     pub fn device_order(&self, other: &Source) -> Ordering {
         let key = |source: &Source| {
             (
+                source.talker != MAGNETIC_COMPASS_TALKER,
                 source.signalk.clone(),
                 source.sfi.clone(),
                 source.sender,

@@ -72,7 +72,7 @@ fn the_second_gyro_serves_while_the_first_is_silent() {
     assert_eq!(first(&mut roles, &spare), None);
     let problems = roles.problems(Instant::now(), Duration::from_mins(1));
     assert!(
-        problems[0].starts_with("gyro: b HEHDT stands in"),
+        problems[0].starts_with("gyro: b HEHDT has not moved"),
         "{problems:?}"
     );
     for degrees in [11.1, 11.0] {
@@ -278,6 +278,41 @@ fn of_two_devices_under_one_selection_one_serves_and_both_are_named() {
         problems,
         ["compass: both a HCHDG and a HNHDG match one selection: a HCHDG is used"]
     );
+}
+
+#[test]
+fn a_device_in_use_that_stands_still_once_the_other_one_is_silent_may_be_its_repeater() {
+    let mut roles = roles(
+        r#"
+compass = [{ input = "a", sentence = "HDG" }]
+position = [{ input = "a" }]
+"#,
+    );
+    let mut hear = |second, id, degrees| {
+        first(&mut roles, &seen("a", "GPRMC", fix(second)));
+        first(&mut roles, &seen("a", id, raw(degrees)))
+    };
+    hear(0, "SDHDG", 205.5);
+    assert!(hear(0, "ECHDG", 205.5).is_some());
+    // It comes late, and settles.
+    for (second, degrees) in [(1, 205.6), (2, 205.5), (3, 205.6), (8, 205.7), (15, 205.7)] {
+        assert!(hear(second, "ECHDG", degrees).is_some(), "{second}");
+    }
+    assert_eq!(hear(16, "ECHDG", 205.7), None);
+    assert_eq!(hear(17, "ECHDG", 205.6), None);
+    assert_eq!(hear(18, "ECHDG", 205.7), None);
+    assert!(hear(19, "ECHDG", 205.6).is_some());
+    assert!(hear(40, "ECHDG", 205.7).is_some());
+}
+
+#[test]
+fn of_all_devices_the_one_with_the_talker_of_a_compass_is_used() {
+    let mut roles = roles(r#"compass = [{ input = "a", sentence = "HDG" }]"#);
+    first(&mut roles, &seen("a", "ECHDG", raw(205.5)));
+    first(&mut roles, &seen("a", "HCHDG", raw(205.5)));
+    let used = first(&mut roles, &seen("a", "HCHDG", raw(205.5)));
+    assert!(matches!(used, Some(Signal::Compass(_))));
+    assert_eq!(first(&mut roles, &seen("a", "ECHDG", raw(205.5))), None);
 }
 
 #[test]
