@@ -326,8 +326,10 @@ impl LineReader {
         else {
             return reading;
         };
-        let cycles = self.plan.roll_overs + self.cycles_behind(*time);
         let stated = *time;
+        let asked = timestamp(stated.micros() + self.plan.roll_overs * ROLL_OVER_MICROS);
+        let behind = self.cycles_behind(asked.unwrap_or(stated));
+        let cycles = self.plan.roll_overs + behind;
         if let Some(corrected) = timestamp(stated.micros() + cycles * ROLL_OVER_MICROS)
             && cycles > 0
         {
@@ -343,12 +345,13 @@ impl LineReader {
         reading
     }
 
-    /// Returns the roll-overs by which a receiver's date is behind the logger's.
+    /// Returns the roll-overs by which a receiver's date is behind the logger's, or without one
+    /// behind the last date.
     fn cycles_behind(&self, time: Timestamp) -> i64 {
-        let Some(logger) = self.recorded_at else {
+        let Some(before) = self.recorded_at.or(self.near) else {
             return 0;
         };
-        let behind = logger.micros() - time.micros();
+        let behind = before.micros() - time.micros();
         let cycles = (behind + ROLL_OVER_MICROS / 2).div_euclid(ROLL_OVER_MICROS);
         let remainder = behind - cycles * ROLL_OVER_MICROS;
         if cycles < 1 || remainder.abs() > SAME_DATE_MICROS {

@@ -212,6 +212,27 @@ fn a_date_1024_weeks_behind_the_logger_is_corrected_and_reported() {
     };
     let (recorded, _) = read_with(rmc.as_bytes(), plan);
     assert_eq!(recorded[0].at, Some(noon));
+    // What the logger has corrected already is not corrected again.
+    let (_, decoder) = read_with(format!("2026-01-02T12:00:00Z {rmc}\n").as_bytes(), plan);
+    assert_eq!(decoder.roll_over(), Some(RollOver { stated, corrected }));
+}
+
+#[test]
+fn a_receiver_that_rolls_over_within_a_recording_goes_on_with_its_date() {
+    let rmc = |time: &str, date: &str| {
+        sentence(&format!(
+            "GPRMC,{time},A,4330.0,N,00515.0,W,5.0,90.0,{date},,"
+        )) + "\n"
+    };
+    let text = rmc("115959", "020126") + &rmc("120000", "190506") + &rmc("120001", "190506");
+    let (recorded, decoder) = read(&text);
+    let last = recorded.last().unwrap();
+    assert_eq!(last.at, Some(at("2026-01-02T12:00:01Z")));
+    let corrected = at("2026-01-02T12:00:00Z");
+    assert_eq!(decoder.roll_over().unwrap().corrected, corrected);
+    // Another date is another fault.
+    let text = rmc("115959", "020126") + &rmc("120000", "190106");
+    assert_eq!(read(&text).1.roll_over(), None);
 }
 
 #[test]
