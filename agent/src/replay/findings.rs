@@ -229,6 +229,16 @@ pub(super) fn logger_error(recording: &Planned) -> Option<String> {
     ))
 }
 
+/// Describes a recording whose sentences have no checksums.
+pub(super) fn lack_of_checksums(recording: &Planned) -> Option<String> {
+    recording.plan.without_checksums.then(|| {
+        format!(
+            "{}: no sentence has a checksum: they are read without, and damaged ones are not noticed",
+            recording.path.display()
+        )
+    })
+}
+
 /// Describes recordings in which nothing can be read, in one line.
 pub(super) fn unreadable(recordings: &[Finished]) -> String {
     let mut words = String::new();

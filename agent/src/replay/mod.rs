@@ -89,7 +89,9 @@ pub(crate) fn replay(recordings: &Recordings<'_>) -> anyhow::Result<Replayed> {
     let mut replayed = Replayed::default();
     let planned = replayed.drop_untimed(plan(recordings.files, recordings.roll_overs)?);
     let is_stamped = planned.iter().any(|recording| recording.is_stamped);
-    let ahead: Vec<_> = planned.iter().filter_map(findings::logger_error).collect();
+    let unchecked = planned.iter().filter_map(findings::lack_of_checksums);
+    let ahead = planned.iter().filter_map(findings::logger_error);
+    let of_plan: Vec<_> = unchecked.chain(ahead).collect();
     let mut acquisition = Acquisition::new(
         &recordings.roles.without_input_names(),
         recordings.silence,
@@ -110,7 +112,7 @@ pub(crate) fn replay(recordings: &Recordings<'_>) -> anyhow::Result<Replayed> {
     replayed.samples.extend(acquisition.sampler.take_samples());
     replayed.note_reckoned();
     replayed.windows = acquisition.sampler.take_tally();
-    replayed.notes.extend(ahead);
+    replayed.notes.extend(of_plan);
     for recording in &finished {
         replayed.add(recording);
     }

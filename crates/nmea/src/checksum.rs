@@ -36,6 +36,14 @@ pub(crate) fn compute(body: &[u8]) -> u8 {
     body.iter().fold(0, |sum, byte| sum ^ byte)
 }
 
+/// Returns a sentence, which begins with `$`, with the checksum that it lacks.
+pub fn with_checksum(sentence: &[u8]) -> Vec<u8> {
+    let mut whole = sentence.to_vec();
+    let body = sentence.strip_prefix(b"$").unwrap_or(sentence);
+    append(compute(body), &mut whole);
+    whole
+}
+
 /// Appends `*hh`.
 pub(crate) fn append(sum: u8, out: &mut Vec<u8>) {
     const DIGITS: &[u8; 16] = b"0123456789ABCDEF";

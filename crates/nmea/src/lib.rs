@@ -40,6 +40,7 @@ mod parse;
 mod print;
 mod write;
 
+pub use checksum::with_checksum;
 pub use lines::Lines;
 pub use parse::{MAX_SENTENCE_BYTES, parse};
 pub use rejected::Rejected;

@@ -12,6 +12,7 @@ use binnacle_compass::time::Timestamp;
 use binnacle_nmea::lines::Line;
 use binnacle_nmea::n2k::{self, actisense};
 use binnacle_nmea::recording::{LineFormat, Stamp, split};
+use binnacle_nmea::with_checksum;
 use binnacle_nmea::{Rejected, Tally};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -225,6 +226,9 @@ impl LineReader {
     }
 
     fn sentence(&mut self, number: u64, content: &[u8]) {
+        let is_bare = self.plan.without_checksums && !content.contains(&b'*');
+        let whole = is_bare.then(|| with_checksum(content.trim_ascii_end()));
+        let content = whole.as_deref().unwrap_or(content);
         let lines = &mut self.not_understood;
         let note = |rejected: Rejected| lines.add(rejected.reason(), number, content);
         let Some(tagged) = self.tally.read_noting(content, note) else {

@@ -15,6 +15,8 @@ pub struct Plan {
     pub logger_ahead_micros: i64,
     /// Cycles of 1,024 weeks that are added to the dates of receivers.
     pub roll_overs: i64,
+    /// Set if its sentences are read without checksums, for none has one.
+    pub without_checksums: bool,
     /// Time near which the recording lies, for lines with a time of day alone.
     pub near: Option<Timestamp>,
 }

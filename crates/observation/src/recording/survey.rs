@@ -10,6 +10,7 @@ use super::reader::RecordingReader;
 use crate::{Reading, is_recorded_time};
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::recording::DateOrder;
+use binnacle_nmea::{Rejected, Tally};
 use std::io;
 use std::path::Path;
 
@@ -60,6 +61,8 @@ pub struct Survey {
     pub first: Option<Timestamp>,
     /// Instruments that were recorded.
     pub instruments: Instruments,
+    /// Set if no sentence has a checksum, as of receivers before NMEA 0183 required one.
+    pub without_checksums: bool,
 }
 
 /// Reading of the beginning of a recording with one order of dates.
@@ -70,6 +73,7 @@ struct Pass {
     first: Option<Timestamp>,
     instruments: Instruments,
     differences: Vec<i64>,
+    without_checksums: bool,
 }
 
 impl Survey {
@@ -96,6 +100,7 @@ impl Survey {
             is_stamped: pass.stamps > 0,
             first: pass.first,
             instruments: pass.instruments,
+            without_checksums: pass.without_checksums,
         })
     }
 
@@ -108,6 +113,7 @@ impl Survey {
                 LoggerClock::Unknown | LoggerClock::Agrees => 0,
             },
             roll_overs: 0,
+            without_checksums: self.without_checksums,
             near: self.first,
         }
     }
@@ -120,6 +126,25 @@ impl Pass {
             near,
             ..Plan::default()
         };
+        let (pass, tally) = Pass::read_with(path, plan)?;
+        let no_checksum = Rejected::NoChecksum.reason();
+        let lacks = tally.rejected().any(|(reason, _)| reason == no_checksum);
+        if tally.total_read() > 0 || !lacks {
+            return Ok(pass);
+        }
+        let without_checksums = true;
+        let plan = Plan {
+            without_checksums,
+            ..plan
+        };
+        let (pass, tally) = Pass::read_with(path, plan)?;
+        Ok(Pass {
+            without_checksums: tally.total_read() > 0,
+            ..pass
+        })
+    }
+
+    fn read_with(path: &Path, plan: Plan) -> io::Result<(Pass, Tally)> {
         let mut reader = RecordingReader::open(path, "survey".into(), plan)?;
         let mut pass = Pass::default();
         let mut bytes = 0;
@@ -138,7 +163,7 @@ impl Pass {
                 break;
             }
         }
-        Ok(pass)
+        Ok((pass, reader.decoder().take_tally()))
     }
 
     fn add(&mut self, recorded: &Recorded) {

@@ -236,6 +236,27 @@ fn a_receiver_that_rolls_over_within_a_recording_goes_on_with_its_date() {
 }
 
 #[test]
+fn sentences_of_a_recording_without_any_checksum_are_read() {
+    let folder = TempDir::new().unwrap();
+    let text = "2014-08-01T00:00:00.3Z $GPGLL,2200.097,S,01756.346,W,000000,A\n\
+                2014-08-01T00:00:01.3Z \"$GPVTG,220.6,T,,M,009.7,N,018.0,K\"\n";
+    let survey = |text: &str| Survey::of(&file(&folder, text.as_bytes()), None).unwrap();
+    let plan = survey(text).plan();
+    assert!(plan.without_checksums);
+    let (recorded, mut decoder) = read_with(text.as_bytes(), plan);
+    assert_eq!(decoder.take_tally().total_read(), 2);
+    let fixes = recorded
+        .iter()
+        .filter(|recorded| matches!(recorded.seen.reading, Reading::Fix { .. }));
+    assert_eq!(fixes.count(), 1);
+    // Where others have one, its lack is damage.
+    let hdt = sentence("HEHDT,218.3,T");
+    let mixed = format!("{text}{hdt}\n");
+    assert!(!survey(&mixed).plan().without_checksums);
+    assert!(!survey("no sentence at all\n").plan().without_checksums);
+}
+
+#[test]
 fn a_survey_finds_the_zone_of_the_logger_and_the_order_of_its_dates() {
     let folder = TempDir::new().unwrap();
     let zda = sentence("GPZDA,120000,03,02,2026,00,00");
