@@ -4,6 +4,7 @@ use super::document::Document;
 use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::string::FromUtf8Error;
 
 /// Reason that a configuration cannot be used, in one line.
 #[derive(Debug, thiserror::Error)]
@@ -31,6 +32,17 @@ pub(crate) enum ConfigError {
 }
 
 impl ConfigError {
+    /// Creates the error of a file in another encoding, as some editors write.
+    pub(crate) fn not_text(path: &Path, error: &FromUtf8Error) -> ConfigError {
+        let right = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        ConfigError::Invalid {
+            path: path.to_owned(),
+            line: right.split(|&byte| byte == b'\n').count(),
+            field: String::new(),
+            problem: "this is not text in UTF-8: save the file in that encoding".to_owned(),
+        }
+    }
+
     /// Creates the error of a field of a file, given by its keys, that was read before.
     pub(crate) fn of_field(path: &Path, keys: &[&str], problem: String) -> ConfigError {
         // What was read a moment ago can be read, or has no line any more.
@@ -79,9 +91,7 @@ impl Problem {
             Place::Bytes(span) => span.clone(),
             Place::Field(keys) => document.span_of(keys),
         };
-        let is_whole = span
-            .as_ref()
-            .is_none_or(|span| span.len() >= text.trim_end().len());
+        let is_whole = span.as_ref().is_none_or(|span| *span == (0..0));
         let at = span.map_or(0, |span| span.start);
         let field = match &self.place {
             Place::Field(keys) => keys.iter().rev().find(|key| !is_number(key)).cloned(),

@@ -84,10 +84,11 @@ pub(crate) struct PageConfig {
 impl Config {
     /// Reads and checks a file.
     pub(crate) fn load(path: &Path) -> Result<Config, ConfigError> {
-        let text = fs::read_to_string(path).map_err(|source| ConfigError::Unreadable {
+        let bytes = fs::read(path).map_err(|source| ConfigError::Unreadable {
             path: path.to_owned(),
             source,
         })?;
+        let text = String::from_utf8(bytes).map_err(|error| ConfigError::not_text(path, &error))?;
         let mut config = parse(&text).map_err(|wrong| wrong.in_file(path, &text))?;
         let directory = path.parent().unwrap_or(Path::new("."));
         config.data_dir = directory.join(&config.data_dir);
@@ -236,6 +237,18 @@ stale_s = 15
         assert!(message("").contains("data_dir"));
         let wrong = WHOLE.trim_start().replace("data_dir = \"state\"\n", "");
         assert_eq!(message(&wrong), "agent.toml:1: missing field `data_dir`");
+    }
+
+    #[test]
+    fn a_file_in_another_encoding_is_named_with_the_line() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let path = folder.path().join("agent.toml");
+        fs::write(&path, b"data_dir = \"d\"\n# caf\xe9\n").unwrap();
+        let wrong = Config::load(&path).unwrap_err().to_string();
+        assert!(
+            wrong.contains("agent.toml:2: this is not text in UTF-8"),
+            "{wrong}"
+        );
     }
 
     #[test]
