@@ -11,6 +11,7 @@ use std::fmt::Write;
 use tokio::time::Instant;
 
 const GYRO_TALKER: &[u8; 2] = b"HE";
+const WRITES: &str = "a String takes every write";
 
 /// Sources that are heard, with proposed roles.
 #[derive(Clone, Debug, Serialize)]
@@ -37,8 +38,7 @@ impl Discovery {
     /// Formats the list as comments above the proposed roles: a section of a configuration.
     pub(crate) fn text(&self) -> String {
         let mut out = String::new();
-        self.write_text(&mut out)
-            .expect("a String takes every write");
+        self.write_text(&mut out).expect(WRITES);
         out
     }
 
@@ -186,24 +186,38 @@ fn selection(source: &Source, heard: &[Heard<'_>]) -> String {
     if let Some(sfi) = &source.sfi {
         push_key(&mut keys, "sfi", sfi);
     }
-    let is_twin = |other: &Source| {
-        other.sender != source.sender
-            && Source {
-                sender: source.sender,
-                ..other.clone()
-            } == *source
-    };
-    if let Some(sender) = source
-        .sender
-        .filter(|_| heard.iter().any(|(other, _)| is_twin(other)))
+    // Devices that send alike differ in these alone.
+    let twins = || heard.iter().filter(|(other, _)| is_twin(other, source));
+    if let Some(sender) = source.sender
+        && twins().any(|(other, _)| other.sender != source.sender)
     {
         push_key(&mut keys, "sender", &sender.to_string());
+    }
+    if twins().any(|(other, _)| !other.is_same_device(source)) {
+        match (source.n2k_name, source.n2k_address) {
+            (Some(name), _) => push_key(&mut keys, "n2k_name", &name.to_string()),
+            (None, Some(address)) => {
+                write!(keys, ", n2k_address = {}", address.number()).expect(WRITES);
+            }
+            (None, None) => {}
+        }
     }
     format!("{{ {keys} }}")
 }
 
+/// Returns whether two sources have the same name but for the sender and the device.
+fn is_twin(one: &Source, other: &Source) -> bool {
+    let name = |source: &Source| Source {
+        sender: None,
+        n2k_address: None,
+        n2k_name: None,
+        ..source.clone()
+    };
+    name(one) == name(other)
+}
+
 fn push_key(keys: &mut String, key: &str, value: &str) {
-    write!(keys, ", {key} = {}", quoted(value)).expect("a String takes every write");
+    write!(keys, ", {key} = {}", quoted(value)).expect(WRITES);
 }
 
 fn quoted(text: &str) -> String {

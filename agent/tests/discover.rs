@@ -92,6 +92,41 @@ async fn a_recording_is_listed_and_its_proposed_roles_sample_it() {
     assert!(tally["windows"]["accepted"].as_u64() > Some(200), "{tally}");
 }
 
+#[tokio::test]
+async fn two_compasses_on_a_bus_are_distinguished_by_name_or_address() {
+    let folder = TempDir::new().unwrap();
+    // Vessel heading from magnetic north, and one address claim (60928) after the first heading.
+    let mut log = String::new();
+    for second in 0..5 {
+        writeln!(
+            log,
+            "(178000000{second}.100000) can0 09F11204#0010270000FF7FFD"
+        )
+        .unwrap();
+        writeln!(
+            log,
+            "(178000000{second}.200000) can0 09F11209#0010280000FF7FFD"
+        )
+        .unwrap();
+        writeln!(
+            log,
+            "(178000000{second}.300000) can0 18EEFF04#1243E0E7008C78C0"
+        )
+        .unwrap();
+    }
+    std::fs::write(folder.path().join("bus.log"), log).unwrap();
+    let done = discover(folder.path(), "[inputs.bus]\nfile = \"bus.log\"\n", &[]).await;
+    let said = text(&done.stdout);
+    for (wanted, count) in [
+        ("# bus N2HDG (4)", 1),
+        ("# bus N2HDG (9)", 1),
+        ("sentence = \"HDG\", n2k_name = \"c0788c00e7e04312\" }", 1),
+        ("sentence = \"HDG\", n2k_address = 9 }", 1),
+    ] {
+        assert_eq!(said.matches(wanted).count(), count, "{wanted:?} in\n{said}");
+    }
+}
+
 /// A server that greets, repeats what it has cached, and goes on with live values.
 async fn signal_k(listener: TcpListener) {
     let (stream, _) = listener.accept().await.unwrap();

@@ -88,6 +88,9 @@ impl HeardSources {
         seconds: f64,
     ) -> Option<&mut HeardSource> {
         if !self.sources.contains_key(&seen.source) {
+            self.name_device(&seen.source);
+        }
+        if !self.sources.contains_key(&seen.source) {
             if self.sources.len() >= MAX_SOURCES {
                 return None;
             }
@@ -103,6 +106,17 @@ impl HeardSources {
         let source = self.sources.get_mut(&seen.source)?;
         source.note(seen, heard, age, seconds);
         Some(source)
+    }
+
+    /// Gives a device on NMEA 2000 its NAME: readings come before it is known.
+    fn name_device(&mut self, source: &Source) {
+        let mut unnamed = source.clone();
+        unnamed.n2k_name = None;
+        if source.n2k_name.is_some()
+            && let Some(known) = self.sources.remove(&unnamed)
+        {
+            self.sources.insert(source.clone(), known);
+        }
     }
 
     /// Returns the sources in the order of their names.
@@ -215,6 +229,9 @@ impl SourceReport {
                 name += what;
                 name += text;
             }
+        }
+        if let Some(address) = self.n2k_address {
+            name = format!("{name} ({address})");
         }
         let rate = self
             .rate_hz

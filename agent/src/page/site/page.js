@@ -113,7 +113,8 @@ function showCard(status) {
 
 function sourceName(source) {
   return source.input + " " + (source.source ? source.source + " " : source.talker) + source.sentence +
-    (source.sfi ? " of " + source.sfi : "") + (source.sender ? " from " + source.sender : "");
+    (source.sfi ? " of " + source.sfi : "") + (source.sender ? " from " + source.sender : "") +
+    (source.n2k_address === undefined ? "" : " (" + source.n2k_address + ")");
 }
 
 let latest = null; // status
