@@ -36,29 +36,30 @@ const HOURLY: Policy = Policy {
     bytes_a_day: 12_900.0,
 };
 
-/// Days to measure: a few, or a month with `make bench-link`.
-fn days() -> u32 {
+/// Days to measure: as few as given, or a month with `make bench-link`.
+fn days_or(few: u32) -> u32 {
     let asked = std::env::var("BINNACLE_LINK_DAYS").ok();
-    asked.map_or(2, |days| days.parse().expect("a number of days"))
+    asked.map_or(few, |days| days.parse().expect("a number of days"))
 }
 
 /// Sails for some days in fast time: at each sealed batch the ship waits until
 /// it is uploaded and analysed, as it would be before the next one.
 async fn costs(policy: Policy) -> Result<()> {
+    let days = days_or(2);
     let profile = format!("profile = \"{}\"", policy.profile);
     let mut remote = ShipOnLink::start("month.toml", &profile).await?;
     // The first day brings settings and a first model; later days are alike.
     sail_days(&mut remote, &policy, 0, 2).await?;
     let before = remote.satellite.tally().await?;
-    sail_days(&mut remote, &policy, 2, 2 + days()).await?;
+    sail_days(&mut remote, &policy, 2, 2 + days).await?;
     let after = remote.satellite.tally().await?;
     ensure_used(&after)?;
-    let a_day = per_day(&before, &after);
+    let a_day = per_day(&before, &after, days);
     let spool = remote.wait_until_uploaded().await?;
     println!(
         "{}: {a_day:.0} bytes a day over {} days, {} batches in all",
         policy.profile,
-        days(),
+        days,
         spool.acknowledged.len()
     );
     remote.check_and_stop().await?;
@@ -79,8 +80,8 @@ async fn sail_days(remote: &mut ShipOnLink, policy: &Policy, from: u32, to: u32)
     Ok(())
 }
 
-fn per_day(before: &Tally, after: &Tally) -> f64 {
-    (after.bytes() - before.bytes()) as f64 / f64::from(days())
+fn per_day(before: &Tally, after: &Tally, days: u32) -> f64 {
+    (after.bytes() - before.bytes()) as f64 / f64::from(days)
 }
 
 #[test]
@@ -118,6 +119,7 @@ fn the_agent_counts_what_its_server_s_certificates_cost() {
 
 /// Returns what the agent counts for a connection to a server of this chain, in bytes.
 async fn cost_of_chain(chain: Chain) -> Result<f64> {
+    let days = days_or(1);
     let certify = |folder: &Path, server| chain.make(folder, server);
     let uplink = "profile = \"metered\"";
     let mut remote = ShipOnLink::start_with("month.toml", uplink, certify).await?;
@@ -125,10 +127,10 @@ async fn cost_of_chain(chain: Chain) -> Result<f64> {
     sail_days(&mut remote, &DAILY, 0, 1).await?;
     let before = remote.satellite.tally().await?;
     let (counted_before, _) = counted_bytes(&remote.ship).await?;
-    sail_days(&mut remote, &DAILY, 1, 1 + days()).await?;
-    let carried = per_day(&before, &remote.satellite.tally().await?);
+    sail_days(&mut remote, &DAILY, 1, 1 + days).await?;
+    let carried = per_day(&before, &remote.satellite.tally().await?, days);
     let (counted_after, connection) = counted_bytes(&remote.ship).await?;
-    let counted = (counted_after - counted_before) / f64::from(days());
+    let counted = (counted_after - counted_before) / f64::from(days);
     println!(
         "{chain:?}: {carried:.0} bytes a day, {counted:.0} counted, {connection:.0} a connection"
     );
