@@ -142,15 +142,14 @@ impl Independence {
 
 impl Reference {
     fn weigh(&mut self, now: Timestamp) {
-        let Some((single, means)) = self.pairs.weigh(now) else {
+        let Some(weighed) = self.pairs.weigh(now) else {
             return;
         };
-        let both = [single, means];
         self.verdict = match self.verdict {
-            _ if both.iter().any(SharedNoise::is_shared) => Verdict::Shared,
-            Verdict::Shared if !both.iter().all(SharedNoise::is_independent) => Verdict::Shared,
+            _ if weighed.iter().any(SharedNoise::is_shared) => Verdict::Shared,
+            Verdict::Shared if !weighed.iter().all(SharedNoise::is_independent) => Verdict::Shared,
             Verdict::Independent => Verdict::Independent,
-            _ if both.iter().all(SharedNoise::favours_independence) => Verdict::Independent,
+            _ if weighed.iter().all(SharedNoise::favours_independence) => Verdict::Independent,
             _ => Verdict::Suspected,
         };
     }

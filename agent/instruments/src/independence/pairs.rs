@@ -3,7 +3,8 @@
 //! A copy of the compass comes late, now more and now less. One by one it is some reading of the
 //! last moments, to its digits: where a compass is read once a second or the ship yaws much, that
 //! shows. Where it is read often, any of its readings may be the one, and only means show that the
-//! two never part. An independent instrument differs either way.
+//! two never part. Displays and autopilots smooth what they repeat: so the means are also of the
+//! compass smoothed. An independent instrument differs either way.
 
 use binnacle_analysis::fit::{HeadingPair, SharedNoise, weigh_independence};
 use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation, wrap_180, wrap_360};
@@ -21,6 +22,9 @@ const READINGS_OF_MEAN: usize = 20;
 /// Readings from one mean to the next. Means that overlap are not counted twice: what counts is
 /// the number of headings.
 const READINGS_TO_NEXT: usize = 10;
+/// Time constants by which a repeater may smooth the compass, seconds: none, and steps of damping.
+/// Between two of them it is a mix of both, very nearly.
+const SMOOTHING_S: [f64; 7] = [0.0, 2.0, 3.0, 4.5, 6.5, 9.5, 14.0];
 /// Interval of the readings of the reference that count, seconds.
 const INTERVAL_S: f64 = 1.0;
 /// Longest gap within a mean, seconds: some receivers give the time every few seconds.
@@ -52,6 +56,8 @@ pub(super) struct RecentCompass {
     since_advance: usize,
     rate_hz: f64,
     advanced: Option<Timestamp>,
+    /// Compass as each time constant smooths it, degrees.
+    smoothed_deg: Option<[f64; SMOOTHING_S.len()]>,
 }
 
 impl RecentCompass {
@@ -68,6 +74,7 @@ impl RecentCompass {
         // A compass that is read no more makes no pair.
         if self.rate_hz <= 0.0 {
             self.readings.clear();
+            self.smoothed_deg = None;
         }
     }
 
@@ -78,6 +85,17 @@ impl RecentCompass {
             self.readings.pop_front();
         }
         self.readings.push_back(compass);
+        self.smooth(compass.degrees());
+    }
+
+    fn smooth(&mut self, compass_deg: f64) {
+        let known = self.smoothed_deg.filter(|_| self.rate_hz > 0.0);
+        let mut smoothed_deg = known.unwrap_or([compass_deg; SMOOTHING_S.len()]);
+        for (smoothed, constant_s) in smoothed_deg.iter_mut().zip(SMOOTHING_S) {
+            let share = -(-1.0 / (self.rate_hz * constant_s)).exp_m1();
+            *smoothed += share.min(1.0) * wrap_180(compass_deg - *smoothed);
+        }
+        self.smoothed_deg = Some(smoothed_deg);
     }
 
     /// Returns the readings that a copy may repeat, the latest first.
@@ -92,11 +110,24 @@ impl RecentCompass {
 #[derive(Debug, Default)]
 pub(super) struct ReferencePairs {
     singles: Sectors<Single>,
-    means: Sectors<HeadingPair>,
-    latest: VecDeque<HeadingPair>,
+    means: Means,
     paired: Option<Timestamp>,
     differences_deg: VecDeque<f64>,
     new_means: u32,
+}
+
+/// Means of the reference and of the compass, as it is and smoothed.
+#[derive(Debug, Default)]
+struct Means {
+    sectors: Sectors<Smoothed>,
+    latest: VecDeque<Smoothed>,
+}
+
+/// A pair, and how far the compass smoothed by each time constant is from its own reading, degrees.
+#[derive(Clone, Copy, Debug)]
+struct Smoothed {
+    pair: HeadingPair,
+    off_deg: [f64; SMOOTHING_S.len()],
 }
 
 /// Reading of the reference with the latest reading of the compass, and with the nearest.
@@ -142,7 +173,14 @@ impl ReferencePairs {
             log_choices: (compass.candidates().count() as f64).ln(),
         };
         self.singles.add(single);
-        self.add_to_mean(pair(middle(compass.candidates(), latest)), at.time);
+        let middle = middle(compass.candidates(), latest);
+        let off_deg = compass
+            .smoothed_deg
+            .map_or([0.0; SMOOTHING_S.len()], |smoothed| {
+                smoothed.map(|degrees| wrap_180(degrees - middle.degrees()))
+            });
+        let pair = pair(middle);
+        self.new_means += u32::from(self.means.add(Smoothed { pair, off_deg }, at.time));
     }
 
     /// Returns whether the pairs are to be weighed.
@@ -152,18 +190,18 @@ impl ReferencePairs {
     }
 
     /// Weighs the pairs one by one, and the means; none where there are too few.
-    pub(super) fn weigh(&mut self, now: Timestamp) -> Option<(SharedNoise, SharedNoise)> {
+    pub(super) fn weigh(&mut self, now: Timestamp) -> Option<Vec<SharedNoise>> {
         self.new_means = 0;
         self.singles.forget(now);
-        self.means.forget(now);
-        let means = weigh_independence(&self.means.all().copied().collect::<Vec<_>>())?;
+        let mut weighed = self.means.weigh(now)?;
         let latest: Vec<_> = self.singles.all().map(|single| single.latest).collect();
         let nearest: Vec<_> = self.singles.all().map(|single| single.nearest).collect();
         let log_choices: f64 = self.singles.all().map(|single| single.log_choices).sum();
         let mean_log_choices = log_choices / latest.len().max(1) as f64;
         let latest = weigh_independence(&latest)?;
         let single = weigh_independence(&nearest)?.of_choice(latest, mean_log_choices);
-        Some((single, means))
+        weighed.push(single);
+        Some(weighed)
     }
 
     /// Returns the middle of the latest differences.
@@ -177,38 +215,89 @@ impl ReferencePairs {
         sorted.sort_by(f64::total_cmp);
         difference_deg + sorted[sorted.len() / 2]
     }
+}
 
-    fn add_to_mean(&mut self, pair: HeadingPair, time: Timestamp) {
-        let last = self.latest.back().and_then(|last| last.time);
+impl Means {
+    /// Adds a pair. Returns whether it makes a mean.
+    fn add(&mut self, one: Smoothed, time: Timestamp) -> bool {
+        let last = self.latest.back().and_then(|last| last.pair.time);
         if last.is_some_and(|last| time.seconds_since(last).abs() > MAX_GAP_S) {
             self.latest.clear();
         }
-        self.latest.push_back(pair);
+        self.latest.push_back(one);
         if self.latest.len() < READINGS_OF_MEAN {
-            return;
+            return false;
         }
-        let mean = mean(&self.latest, pair);
+        let mean = mean(&self.latest, one.pair);
         self.latest.drain(..READINGS_TO_NEXT);
-        self.means.add(mean);
-        self.new_means += 1;
+        self.sectors.add(mean);
+        true
+    }
+
+    /// Weighs the means with the compass as it is, and as it is between each two steps of smoothing.
+    fn weigh(&mut self, now: Timestamp) -> Option<Vec<SharedNoise>> {
+        self.sectors.forget(now);
+        let mut means: Vec<Smoothed> = self.sectors.all().copied().collect();
+        means.sort_by_key(|mean| mean.pair.time);
+        let pairs: Vec<_> = means.iter().map(|mean| mean.pair).collect();
+        let mut weighed = vec![weigh_independence(&pairs)?];
+        for step in 1..SMOOTHING_S.len() {
+            // A smoothed compass may hardly turn: then it proves nothing.
+            weighed.extend(weigh_independence(&mixed(&means, step)));
+        }
+        Some(weighed)
     }
 }
 
+/// Returns pairs with the mix of the compass between two steps of smoothing that the reference
+/// follows best.
+fn mixed(means: &[Smoothed], step: usize) -> Vec<HeadingPair> {
+    let (mut product, mut square) = (0.0, 0.0);
+    for two in means.windows(2) {
+        let change = |value: &dyn Fn(&Smoothed) -> f64| wrap_180(value(&two[1]) - value(&two[0]));
+        let smoother = change(&|mean| mean.off_deg[step] - mean.off_deg[step - 1]);
+        let apart = change(&|mean| {
+            let compass_deg = mean.pair.compass.degrees() + mean.off_deg[step - 1];
+            mean.pair.reference.degrees() - compass_deg
+        });
+        product += smoother * apart;
+        square += smoother * smoother;
+    }
+    let share = if square > 0.0 {
+        (product / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let mix = |mean: &Smoothed| {
+        let off_deg = mean.off_deg[step - 1] * (1.0 - share) + mean.off_deg[step] * share;
+        let compass = CompassHeading::new(mean.pair.compass.degrees() + off_deg);
+        HeadingPair {
+            compass: compass.unwrap_or(mean.pair.compass),
+            ..mean.pair
+        }
+    };
+    means.iter().map(mix).collect()
+}
+
 /// Returns the means of compass and reference, about one of the pairs.
-fn mean(pairs: &VecDeque<HeadingPair>, about: HeadingPair) -> HeadingPair {
-    let count = pairs.len() as f64;
+fn mean(all: &VecDeque<Smoothed>, about: HeadingPair) -> Smoothed {
+    let count = all.len() as f64;
     let mean_of = |heading: fn(&HeadingPair) -> f64| {
-        let offs = pairs
+        let offs = all
             .iter()
-            .map(|pair| wrap_180(heading(pair) - heading(&about)));
+            .map(|one| wrap_180(heading(&one.pair) - heading(&about)));
         heading(&about) + offs.sum::<f64>() / count
     };
     let compass = CompassHeading::new(mean_of(|pair| pair.compass.degrees()));
     let reference = TrueHeading::new(mean_of(|pair| pair.reference.degrees()));
-    HeadingPair {
-        compass: compass.unwrap_or(about.compass),
-        reference: reference.unwrap_or(about.reference),
-        ..about
+    let off = |step: usize| all.iter().map(|one| one.off_deg[step]).sum::<f64>() / count;
+    Smoothed {
+        pair: HeadingPair {
+            compass: compass.unwrap_or(about.compass),
+            reference: reference.unwrap_or(about.reference),
+            ..about
+        },
+        off_deg: std::array::from_fn(off),
     }
 }
 
@@ -242,9 +331,9 @@ impl Paired for Single {
     }
 }
 
-impl Paired for HeadingPair {
+impl Paired for Smoothed {
     fn pair(&self) -> &HeadingPair {
-        self
+        &self.pair
     }
 }
 

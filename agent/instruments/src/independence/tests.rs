@@ -204,6 +204,34 @@ fn a_heading_made_of_the_compass_never_serves_and_is_named_after_turns() {
     }
 }
 
+/// A display that smooths the compass.
+fn smoothed(readings: &[f64], seconds: f64, rate_hz: usize) -> f64 {
+    let share = 1.0 - (-1.0 / (seconds * rate_hz as f64)).exp();
+    let recent = &readings[readings.len().saturating_sub(600)..];
+    recent[1..].iter().fold(recent[0], |smoothed, reading| {
+        let off = (reading - smoothed + 540.0).rem_euclid(360.0) - 180.0;
+        smoothed + share * off
+    })
+}
+
+#[test]
+fn a_heading_that_a_display_smooths_serves_ten_minutes_at_most_and_is_named() {
+    for ship in [FREIGHTER, YACHT] {
+        for (seed, seconds) in (0..6).zip([1.0, 2.0, 3.5, 5.0, 7.0, 10.0]) {
+            let sailed = sail(seed, 60, ship, |moment| {
+                let heading = smoothed(moment.compass_deg, seconds, ship.compass_rate);
+                shown(heading + VARIATION_DEG, 0.1)
+            });
+            assert!(sailed.used <= 10 * 60, "{ship:?} {seconds}: {sailed:?}");
+            let named = sailed.problems.concat();
+            assert!(
+                named.starts_with("gyro: "),
+                "{ship:?} {seconds}: {sailed:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_heading_made_of_the_compass_never_serves_on_one_course_either() {
     for seed in 0..6 {
