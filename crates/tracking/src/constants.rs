@@ -100,7 +100,7 @@ pub(crate) const WIDER_COST: f64 = 2.0;
 /// is beyond it, and by [`WILD`] one in 250 is wild.
 pub(crate) const LARGEST_SD: f64 = 6.0;
 
-// What is detected, and how it is told.
+// What is detected, and how it is reported.
 
 /// False alarms that are allowed, a year: of the ship, of a reference, of what passes by and of the
 /// compass. Assumed: a master who is called often for nothing does not come.
@@ -108,16 +108,16 @@ pub(crate) const FALSE_ALARMS_A_YEAR: [f64; 4] = [0.08, 0.1, 0.1, 0.02];
 /// Probability from which a date or an end of an event is credible, and a cause is named.
 /// Probability: odds of fifty.
 pub(crate) const IMPROBABLE: f64 = 0.02;
-/// Posterior probability below which a detected event is withdrawn. Assumed: not at every doubt,
+/// Posterior probability below which a detected event is withdrawn. Assumed: not at every turn,
 /// or the alarm would come and go.
 pub(crate) const WITHDRAWN: f64 = 0.3;
-/// Probability of what the logbook says, and from which the posterior is told as a fact. Assumed:
+/// Probability of what the logbook says, and from which the posterior is reported as a fact. Assumed:
 /// one entry in ten is wrong.
 pub(crate) const TRUSTED: f64 = 0.9;
 /// Factor on the weight of a cause that people reported at the time. Assumed: of a hundred
 /// reports of lightning, one is made up.
 pub(crate) const REPORTED_FACTOR: f64 = 100.0;
-/// Share of a disturbance's readings with a smaller error than the one that is told: the largest
+/// Share of a disturbance's readings with a smaller error than the one that is reported: the largest
 /// are wild. Probability: the upper quartile.
 pub(crate) const SMALLER_SHARE: f64 = 0.75;
 /// Innovation by which a change is detected, standard deviations. Probability: it outweighs an
