@@ -41,6 +41,7 @@ test-web: web ## Test the dashboard's own functions
 
 test-rust: web ## Test every crate and, end to end, the real programs on both databases
 	@scripts/signalk-server >/dev/null
+	@scripts/api-clients >/dev/null
 	$(CARGO) build --locked --workspace $(TESTED)
 	@scripts/with-postgres $(CARGO) test --locked --workspace $(TESTED)
 	$(CARGO) test --locked --workspace --doc
@@ -58,6 +59,7 @@ lint: web ## Formatter, linters, licences, advisories, documentation
 
 soak: web ## The long tests: many kills, many voyages
 	@scripts/signalk-server >/dev/null
+	@scripts/api-clients >/dev/null
 	$(CARGO) build --locked --workspace $(TESTED)
 	@BINNACLE_SOAK=1 scripts/with-postgres $(CARGO) test --locked --workspace $(TESTED)
 	@PHASES=examples,coverage,fuzzing,stateful CASES=200 scripts/fuzz-api

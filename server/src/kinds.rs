@@ -5,8 +5,8 @@ use binnacle_fleet::{alerts, event_kinds as fleet_events};
 use binnacle_orders::{event_kinds as orders_events, work_orders};
 use binnacle_planning::notifications::{self, NoticeKinds};
 use binnacle_planning::{event_kinds as planning_events, reports};
-use binnacle_platform::webhooks::{Audience, DeclaredKind, MessageKinds};
-use binnacle_platform::{events, outbox};
+use binnacle_platform::events;
+use binnacle_platform::webhooks::{self, MessageKinds};
 
 /// Returns all kinds of messages of the server.
 pub fn message_kinds() -> MessageKinds {
@@ -14,7 +14,7 @@ pub fn message_kinds() -> MessageKinds {
         .into_iter()
         .chain(work_orders::message_kinds::ALL)
         .chain([notifications::MESSAGE_KIND, reports::MESSAGE_KIND])
-        .chain([DeclaredKind::new(outbox::Kind::TEST, Audience::Nobody)]);
+        .chain([webhooks::TEST]);
     MessageKinds::new(kinds, work_orders::message_kinds::SUBJECT)
 }
 

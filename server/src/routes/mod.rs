@@ -62,6 +62,7 @@ const PATIENCE: Duration = Duration::from_mins(2);
         (name = "adjusting", description = "Binnacles, port calls and work orders. Predictions here are not \
             certificates"),
         (name = "alerts", description = "Alerts, and their delivery by mail and webhook"),
+        (name = "webhooks", description = "Messages that this server sends to your programs"),
         (name = "notifications", description = "Your own notifications and their channels"),
         (name = "operations", description = "Health and metrics"),
     )
@@ -76,6 +77,13 @@ impl utoipa::Modify for Security {
         components.add_security_scheme(
             "session",
             SecurityScheme::ApiKey(ApiKey::Cookie(ApiKeyValue::new(session::cookie::PLAIN))),
+        );
+        components.add_security_scheme(
+            "request",
+            SecurityScheme::ApiKey(ApiKey::Header(ApiKeyValue::with_description(
+                "X-Binnacle-Request",
+                "Any value, as `1`, with each change by session: pages of other sites cannot send it",
+            ))),
         );
         components.add_security_scheme(
             "token",

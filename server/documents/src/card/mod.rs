@@ -36,7 +36,7 @@ use binnacle_fleet::vessels;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Params, file, file_name, time};
+use binnacle_platform::http::{FileContent, Id, Json, Params, file, file_name, time};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 use contents::{CardPlace, CardVessel};
@@ -107,7 +107,7 @@ async fn card_json(
 /// One sheet of A4 in portrait, refused as `card.json` is.
 #[utoipa::path(get, path = "/vessels/{id}/card.pdf", tag = "fleet",
     params(("id" = VesselId, Path), Query),
-    responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
+    responses((status = 200, content_type = "application/pdf", body = inline(FileContent)),
               (status = 401, body = Problem),
               (status = 404, description = "Also when there is no model, or it is withdrawn", body = Problem),
               (status = 409, description = "The model makes no card, for the reason in the detail", body = Problem),
@@ -130,7 +130,7 @@ async fn card_pdf(
 /// The sheet of `card.pdf` as a picture; refused as `card.json` is.
 #[utoipa::path(get, path = "/vessels/{id}/card.svg", tag = "fleet",
     params(("id" = VesselId, Path), Query),
-    responses((status = 200, content_type = "image/svg+xml", body = String),
+    responses((status = 200, content_type = "image/svg+xml", body = inline(FileContent)),
               (status = 401, body = Problem),
               (status = 404, description = "Also when there is no model, or it is withdrawn", body = Problem),
               (status = 409, description = "The model makes no card, for the reason in the detail", body = Problem),
@@ -152,7 +152,7 @@ async fn card_svg(
 /// `card.json` is.
 #[utoipa::path(get, path = "/vessels/{id}/card.csv", tag = "fleet",
     params(("id" = VesselId, Path), Query),
-    responses((status = 200, content_type = "text/csv", body = String),
+    responses((status = 200, content_type = "text/csv", body = inline(FileContent)),
               (status = 401, body = Problem),
               (status = 404, description = "Also when there is no model, or it is withdrawn", body = Problem),
               (status = 409, description = "The model makes no card, for the reason in the detail", body = Problem),

@@ -23,7 +23,7 @@ use binnacle_fleet::vessels;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Page, Params, file, file_name, time};
+use binnacle_platform::http::{FileContent, Id, Json, Page, Params, file, file_name, time};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 use entry::{Entry, EntryKey};
@@ -116,7 +116,7 @@ async fn list_book(
 /// A compass's deviation book as CSV
 #[utoipa::path(get, path = "/vessels/{id}/deviation-book.csv", tag = "fleet",
     params(("id" = VesselId, Path), Range),
-    responses((status = 200, content_type = "text/csv", body = String), (status = 401, body = Problem),
+    responses((status = 200, content_type = "text/csv", body = inline(FileContent)), (status = 401, body = Problem),
               (status = 404, body = Problem), (status = 422, body = Problem)))]
 async fn book_csv(
     State(app): State<App>,
@@ -137,7 +137,7 @@ async fn book_csv(
 /// Sheets of A4 in landscape; at most 5000 entries.
 #[utoipa::path(get, path = "/vessels/{id}/deviation-book.pdf", tag = "fleet",
     params(("id" = VesselId, Path), Range),
-    responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
+    responses((status = 200, content_type = "application/pdf", body = inline(FileContent)),
               (status = 401, body = Problem), (status = 404, body = Problem),
               (status = 422, description = "Also when there are more entries than are printed", body = Problem)))]
 async fn book_pdf(

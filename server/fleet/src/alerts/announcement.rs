@@ -2,13 +2,15 @@
 
 use super::alert::Alert;
 use super::change::{AlertChange, ChangeKind};
-use binnacle_platform::ids::OperatorId;
+use binnacle_platform::ids::{DeliveryId, OperatorId};
 use binnacle_platform::mail::{Announcement, Letter, Phase, TopicList, header, one_line, wrapped};
 use binnacle_platform::notices::{DeclaredKind, DefaultMail, Notice, NoticesPublished, Readers};
-use binnacle_platform::outbox::Message;
+use binnacle_platform::outbox::{Kind, Message};
 use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
+use serde::Serialize;
 use serde_json::json;
+use utoipa::ToSchema;
 
 /// An alert of severity warning or worse is raised, becomes critical, sinks to a notice, or is
 /// over. Critical alerts are sent at once.
@@ -21,6 +23,19 @@ pub const TOPIC_LIST: TopicList = TopicList {
     promise: "alerts of your fleet's compasses reach this address",
 };
 
+/// Message of an alert for webhooks.
+#[derive(Serialize, ToSchema)]
+pub struct AlertMessage<'a> {
+    /// Id of the message: the same in each attempt.
+    id: DeliveryId,
+    /// Kind.
+    kind: Kind,
+    /// Time of the event.
+    at: Time,
+    /// The alert at that moment.
+    alert: &'a Alert,
+}
+
 /// Returns the message for webhooks.
 pub(super) fn message(change: &AlertChange, now: Time) -> Message {
     let AlertChange {
@@ -31,7 +46,13 @@ pub(super) fn message(change: &AlertChange, now: Time) -> Message {
         id: *id,
         kind,
         about: None,
-        body: json!({ "id": id, "kind": kind, "at": now, "alert": alert }).to_string(),
+        body: json!(AlertMessage {
+            id: *id,
+            kind,
+            at: now,
+            alert,
+        })
+        .to_string(),
     }
 }
 

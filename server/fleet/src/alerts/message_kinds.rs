@@ -17,8 +17,20 @@ pub const EXAMPLE: [Kind; 2] = [RAISED, CLEARED];
 
 /// All kinds, in the order in which the API lists them.
 pub const ALL: [DeclaredKind; 4] = [
-    DeclaredKind::new(RAISED, Audience::Operators),
-    DeclaredKind::new(UPDATED, Audience::Operators),
-    DeclaredKind::new(ACKNOWLEDGED, Audience::Operators),
-    DeclaredKind::new(CLEARED, Audience::Operators),
+    DeclaredKind::new(
+        RAISED,
+        Audience::Operators,
+        "An alert is new, or was acknowledged and got worse.",
+    ),
+    DeclaredKind::new(
+        UPDATED,
+        Audience::Operators,
+        "The severity of an alert changed.",
+    ),
+    DeclaredKind::new(
+        ACKNOWLEDGED,
+        Audience::Operators,
+        "Someone acknowledged an alert.",
+    ),
+    DeclaredKind::new(CLEARED, Audience::Operators, "An alert is over."),
 ];

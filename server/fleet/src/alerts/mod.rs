@@ -30,7 +30,7 @@ mod store;
 
 pub use after_adjustment::list_in_force;
 pub use alert::{Alert, Evidence, State};
-pub use announcement::{NOTICE_KIND, TOPIC_LIST};
+pub use announcement::{AlertMessage, NOTICE_KIND, TOPIC_LIST};
 pub use api::router;
 pub use cause::Cause;
 pub use causes::{CardEffect, JobAtRisk, PlanEffect, UnconfirmedAdjustment};

@@ -34,7 +34,7 @@ use binnacle_platform::audit::{self, RequestContext};
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::events::{self, NewEvent};
-use binnacle_platform::http::{Id, Json, Params};
+use binnacle_platform::http::{FileContent, Id, Json, Params};
 use binnacle_platform::time::Time;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::codec::MAX_BYTES;
@@ -88,11 +88,11 @@ async fn open_stream(
 #[utoipa::path(put, path = "/streams/{stream}/batches/{seq}", tag = "agents",
     security(("token" = [])),
     params(("stream" = Uuid, Path), ("seq" = u64, Path, minimum = 1), AgentState),
-    request_body(content = Vec<u8>, content_type = "application/octet-stream",
+    request_body(content = inline(FileContent), content_type = "application/octet-stream",
                  description = "The frame, as crates/wire/FORMAT.md has it"),
     responses((status = 200, description = "As JSON, or in the compact form asked for",
                content((Downlink = "application/json"),
-                       (Vec<u8> = "application/octet-stream"))),
+                       (inline(FileContent) = "application/octet-stream"))),
               (status = 400, body = Problem), (status = 401, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "Other bytes are stored under this number", body = Problem),
               (status = 413, body = Problem), (status = 422, body = Problem)))]
@@ -226,7 +226,7 @@ async fn store_upload(tx: &mut Tx, upload: Upload<'_>, delay_s: f64) -> Result<R
     params(("stream" = Uuid, Path), AgentState),
     responses((status = 200, description = "As JSON, or in the compact form asked for",
                content((Downlink = "application/json"),
-                       (Vec<u8> = "application/octet-stream"))),
+                       (inline(FileContent) = "application/octet-stream"))),
               (status = 401, body = Problem), (status = 404, body = Problem)))]
 async fn downlink(
     State(app): State<App>,

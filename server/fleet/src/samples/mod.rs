@@ -13,7 +13,7 @@ use binnacle_compass::result::SampleDiagnostic;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Page, Params, time};
+use binnacle_platform::http::{FileContent, Id, Json, Page, Params, time};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 use chart_data::SamplePicture;
@@ -98,7 +98,7 @@ async fn list_samples(
 /// A compass's samples as CSV, as `fit` reads it
 #[utoipa::path(get, path = "/vessels/{id}/samples.csv", tag = "fleet",
     params(("id" = VesselId, Path), Range),
-    responses((status = 200, content_type = "text/csv", body = String), (status = 401, body = Problem),
+    responses((status = 200, content_type = "text/csv", body = inline(FileContent)), (status = 401, body = Problem),
               (status = 404, body = Problem), (status = 422, body = Problem)))]
 async fn samples_csv(
     State(app): State<App>,
@@ -112,7 +112,7 @@ async fn samples_csv(
 /// A compass's samples as lines of JSON
 #[utoipa::path(get, path = "/vessels/{id}/samples.ndjson", tag = "fleet",
     params(("id" = VesselId, Path), Range),
-    responses((status = 200, content_type = "application/x-ndjson", body = String),
+    responses((status = 200, content_type = "application/x-ndjson", body = inline(FileContent)),
               (status = 401, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem)))]
 async fn samples_ndjson(

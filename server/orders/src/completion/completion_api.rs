@@ -29,7 +29,7 @@ use binnacle_platform::access::{PartyReader, PartyWriter};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Params, Valid};
+use binnacle_platform::http::{FileContent, Id, Json, Params, Valid};
 use binnacle_platform::idempotency::Key;
 use binnacle_platform::ids::{OrderId, PhotoId};
 use utoipa_axum::router::OpenApiRouter;
@@ -71,7 +71,7 @@ where
 /// The body is the file itself: JPEG, PNG or WebP, 10 MiB at most.
 #[utoipa::path(post, path = "/work-orders/{id}/photos", tag = "adjusting",
     params(("id" = OrderId, Path), Caption, Key),
-    request_body(content = Vec<u8>, content_type = "application/octet-stream"),
+    request_body(content = inline(FileContent), content_type = "application/octet-stream"),
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, body = Problem), (status = 413, body = Problem),
@@ -128,7 +128,7 @@ fn photos(stored: &StoredOrder) -> impl Iterator<Item = (i64, &Photo)> {
 /// See a photograph
 #[utoipa::path(get, path = "/work-orders/{id}/photos/{photo}", tag = "adjusting",
     params(("id" = OrderId, Path), ("photo" = PhotoId, Path)),
-    responses((status = 200, content_type = "image/*", body = Vec<u8>),
+    responses((status = 200, content_type = "image/*", body = inline(FileContent)),
               (status = 401, body = Problem), (status = 404, body = Problem)))]
 async fn find_photo(
     Shared(app): Shared<App>,
@@ -259,7 +259,7 @@ fn no_record() -> Error {
 /// The exact bytes whose hash a firm's key signs.
 #[utoipa::path(get, path = "/work-orders/{id}/record.json", tag = "adjusting",
     params(("id" = OrderId, Path)),
-    responses((status = 200, content_type = "application/json", body = String),
+    responses((status = 200, content_type = "application/json", body = std::collections::HashMap<String, serde_json::Value>),
               (status = 401, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is no record yet", body = Problem)))]
 async fn find_record(
@@ -278,7 +278,7 @@ async fn find_record(
 /// The sheets of the evidence, drawn from `record.json`. A prediction, not a certificate.
 #[utoipa::path(get, path = "/work-orders/{id}/record.pdf", tag = "adjusting",
     params(("id" = OrderId, Path)),
-    responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
+    responses((status = 200, content_type = "application/pdf", body = inline(FileContent)),
               (status = 401, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is no record yet", body = Problem)))]
 async fn print_record(
@@ -295,7 +295,7 @@ async fn print_record(
 /// The sheets of `record.pdf` as one picture, one below the other.
 #[utoipa::path(get, path = "/work-orders/{id}/record.svg", tag = "adjusting",
     params(("id" = OrderId, Path)),
-    responses((status = 200, content_type = "image/svg+xml", body = String),
+    responses((status = 200, content_type = "image/svg+xml", body = inline(FileContent)),
               (status = 401, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is no record yet", body = Problem)))]
 async fn draw_record(
@@ -312,7 +312,7 @@ async fn draw_record(
 /// One line for each place and compass heading, with the 95 % band.
 #[utoipa::path(get, path = "/work-orders/{id}/record.csv", tag = "adjusting",
     params(("id" = OrderId, Path)),
-    responses((status = 200, content_type = "text/csv", body = String),
+    responses((status = 200, content_type = "text/csv", body = inline(FileContent)),
               (status = 401, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is no record yet", body = Problem)))]
 async fn tabulate_record(
@@ -348,7 +348,7 @@ fn record_file(id: OrderId, extension: &str, kind: &str, body: impl Into<Body>) 
 /// hand. A prediction, not a certificate.
 #[utoipa::path(get, path = "/work-orders/{id}/evidence.zip", tag = "adjusting",
     params(("id" = OrderId, Path)),
-    responses((status = 200, content_type = "application/zip", body = Vec<u8>),
+    responses((status = 200, content_type = "application/zip", body = inline(FileContent)),
               (status = 401, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is no record yet", body = Problem)))]
 async fn find_evidence(

@@ -35,17 +35,65 @@ pub const SUBJECT: &str = "work orders";
 
 /// All kinds, in the order in which the API lists them.
 pub const ALL: [DeclaredKind; 13] = [
-    DeclaredKind::new(OFFERED, Audience::OperatorsAndFirms),
-    DeclaredKind::new(ANSWERED, Audience::OperatorsAndFirms),
-    DeclaredKind::new(LAPSED, Audience::OperatorsAndFirms),
-    DeclaredKind::new(WITHDRAWN, Audience::OperatorsAndFirms),
-    DeclaredKind::new(MESSAGE, Audience::OperatorsAndFirms),
-    DeclaredKind::new(RETIME_PROPOSED, Audience::OperatorsAndFirms),
-    DeclaredKind::new(CALL_MOVED, Audience::OperatorsAndFirms),
-    DeclaredKind::new(UPDATED, Audience::OperatorsAndFirms),
-    DeclaredKind::new(COMPLETED, Audience::OperatorsAndFirms),
-    DeclaredKind::new(VERIFIED, Audience::OperatorsAndFirms),
-    DeclaredKind::new(FAILED, Audience::OperatorsAndFirms),
-    DeclaredKind::new(CLOSED, Audience::OperatorsAndFirms),
-    DeclaredKind::new(CANCELLED, Audience::OperatorsAndFirms),
+    DeclaredKind::new(
+        OFFERED,
+        Audience::OperatorsAndFirms,
+        "A work order is offered to a firm.",
+    ),
+    DeclaredKind::new(
+        ANSWERED,
+        Audience::OperatorsAndFirms,
+        "A firm or an operator accepted, declined, or proposed other terms.",
+    ),
+    DeclaredKind::new(
+        LAPSED,
+        Audience::OperatorsAndFirms,
+        "An offer was not answered in time.",
+    ),
+    DeclaredKind::new(
+        WITHDRAWN,
+        Audience::OperatorsAndFirms,
+        "An offer is withdrawn: another firm has the order, or it is cancelled.",
+    ),
+    DeclaredKind::new(
+        MESSAGE,
+        Audience::OperatorsAndFirms,
+        "Someone wrote a message about an order.",
+    ),
+    DeclaredKind::new(
+        RETIME_PROPOSED,
+        Audience::OperatorsAndFirms,
+        "The operator proposes another time to the firm that has an order.",
+    ),
+    DeclaredKind::new(
+        CALL_MOVED,
+        Audience::OperatorsAndFirms,
+        "The port call of an order was moved or withdrawn.",
+    ),
+    DeclaredKind::new(
+        UPDATED,
+        Audience::OperatorsAndFirms,
+        "The berth session of an order has progressed, or documents were added.",
+    ),
+    DeclaredKind::new(
+        COMPLETED,
+        Audience::OperatorsAndFirms,
+        "The adjuster has completed and signed the order.",
+    ),
+    DeclaredKind::new(
+        VERIFIED,
+        Audience::OperatorsAndFirms,
+        "Deviations at sea agree with the prediction.",
+    ),
+    DeclaredKind::new(
+        FAILED,
+        Audience::OperatorsAndFirms,
+        "A deviation at sea disagrees with the prediction.",
+    ),
+    DeclaredKind::new(CLOSED, Audience::OperatorsAndFirms, "The order is closed."),
+    DeclaredKind::new(
+        CANCELLED,
+        Audience::OperatorsAndFirms,
+        "The order is cancelled.",
+    ),
 ];

@@ -26,6 +26,7 @@ pub(crate) mod state;
 pub(crate) mod store;
 mod subscriber;
 pub(crate) mod summary;
+pub(crate) mod webhook_message;
 
 pub use log::canonical_json::sha256_hex;
 pub use new_order::{NewOffer, NewOrder};
@@ -34,6 +35,7 @@ pub use refusal::{Cure, NotAdjustableFields, Refusal};
 pub use state::State;
 pub use store::lock_compass;
 pub use subscriber::{refuse_amended_binnacle, refuse_leave_of_service};
+pub use webhook_message::WorkOrderMessage;
 
 use binnacle_platform::access::PartyWriter;
 use binnacle_platform::app::App;

@@ -9,19 +9,18 @@ use crate::work_orders::log::entry::Entry;
 use crate::work_orders::message_kinds;
 use crate::work_orders::notification_text;
 use crate::work_orders::offers::{Offer, OfferState, Offers};
-use crate::work_orders::state::State;
 use crate::work_orders::store::StoredOrder;
 use crate::work_orders::summary::Summary;
+use crate::work_orders::webhook_message::MessageEntry;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
 use binnacle_platform::events::{self, Event, NewEvent};
-use binnacle_platform::ids::{DeliveryId, FirmId, UserId};
+use binnacle_platform::ids::{FirmId, UserId};
 use binnacle_platform::notices::{Notice, NoticesPublished};
-use binnacle_platform::outbox::{Kind, Message};
+use binnacle_platform::outbox::Message;
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 use binnacle_platform::webhooks;
-use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 /// Order as it was before a change.
@@ -60,7 +59,7 @@ pub(crate) async fn publish_changes(
     let mut messages = Vec::new();
     for entry in &once {
         if let Some(kind) = entry.content.event().webhook() {
-            messages.push(entry_message(kind, summary, entry, now));
+            messages.push(MessageEntry::of(entry).about(summary).queued(kind, now));
         }
     }
     let operator = Tenant::Operator(summary.operator_id);
@@ -144,20 +143,15 @@ fn messages_for(
     let mut messages = Vec::new();
     for entry in new.iter().filter(|entry| offer.shows(entry)) {
         if let Some(kind) = entry.content.event().webhook() {
-            messages.push(entry_message(kind, &seen, entry, now));
+            messages.push(MessageEntry::of(entry).about(&seen).queued(kind, now));
         }
     }
     if offer.is_withdrawn_since(offer_before)
         && let Some(last) = new.last()
     {
         // The reason is confidential: another firm may have it.
-        let body = json!({ "seq": last.seq, "kind": "withdrawn", "at": last.at });
-        messages.push(message_with_entry(
-            message_kinds::WITHDRAWN,
-            &seen,
-            &body,
-            now,
-        ));
+        let entry = MessageEntry::withdrawal(last);
+        messages.push(entry.about(&seen).queued(message_kinds::WITHDRAWN, now));
     }
     messages
 }
@@ -199,44 +193,4 @@ impl Offer {
 /// Author of the last entry; `None` for the server itself.
 fn author(new: &[&Entry]) -> Option<UserId> {
     new.last().and_then(|entry| entry.author.id).map(UserId)
-}
-
-/// Returns the webhook message of an entry.
-fn entry_message(kind: Kind, summary: &Summary, entry: &Entry, now: Time) -> Message {
-    let event = entry.content.event();
-    let exchange = event.exchange();
-    let name = serde_json::to_value(&entry.content).ok();
-    let name = name.and_then(|value| value.get("kind").cloned());
-    let entry = json!({
-        "seq": entry.seq, "kind": name, "at": entry.at, "by": entry.author.name,
-        "firm_id": exchange.map(|exchange| exchange.firm.firm_id),
-        "fee_eur": exchange.and_then(|exchange| exchange.fee_eur),
-        "terms": exchange.and_then(|exchange| exchange.terms.as_ref()),
-        "text": exchange.and_then(|exchange| exchange.text.as_ref()),
-        "call": event.call_change(),
-    });
-    message_with_entry(kind, summary, &entry, now)
-}
-
-/// Body of a message: the order in short, and the event.
-fn message_with_entry(kind: Kind, summary: &Summary, entry: &Value, now: Time) -> Message {
-    let id = DeliveryId::new();
-    let (state, answer_by): (State, Option<Time>) = (summary.state, summary.answer_by);
-    let body = json!({
-        "id": id, "kind": kind, "at": now,
-        "work_order": {
-            "id": summary.id, "state": state, "answer_by": answer_by,
-            "operator_name": summary.operator_name,
-            "vessel_id": summary.vessel_id, "vessel_name": summary.vessel_name,
-            "compass_name": summary.compass_name, "port": summary.port, "berth": summary.berth,
-            "planned_at": summary.planned_at, "call_fit": summary.call_fit,
-        },
-        "entry": entry,
-    });
-    Message {
-        id,
-        kind,
-        about: Some(summary.id.0),
-        body: body.to_string(),
-    }
 }

@@ -21,7 +21,7 @@ use binnacle_platform::access::{PartyReader, PartyWriter};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Listed, Page, Params, Valid, text};
+use binnacle_platform::http::{FileContent, Id, Json, Listed, Page, Params, Valid, text};
 use binnacle_platform::ids::{FeedId, VesselId};
 use binnacle_platform::secret;
 use binnacle_platform::session;
@@ -195,7 +195,7 @@ where
 /// keeps its `UID`, and its `SEQUENCE` grows. Cancelled orders and withdrawn calls stay for some
 /// months, marked.
 #[utoipa::path(get, path = "/calendar.ics", tag = "adjusting", params(Address),
-    responses((status = 200, content_type = "text/calendar", body = String),
+    responses((status = 200, content_type = "text/calendar", body = inline(FileContent)),
               (status = 401, body = Problem)))]
 async fn calendar(State(app): State<App>, scope: Scope) -> Result<Response> {
     let now = app.clock.now().into();

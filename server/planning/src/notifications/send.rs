@@ -17,8 +17,11 @@ use std::time::Duration;
 use tracing::error;
 
 /// Notification mail to a user: one notification, or a digest of several.
-pub const MESSAGE_KIND: DeclaredKind =
-    DeclaredKind::new(Kind::new("notification"), Audience::Nobody);
+pub const MESSAGE_KIND: DeclaredKind = DeclaredKind::new(
+    Kind::new("notification"),
+    Audience::Nobody,
+    "A notification is sent as mail.",
+);
 
 /// Interval between checks for due mail.
 const POLL_INTERVAL: Duration = Duration::from_secs(5);

@@ -16,7 +16,7 @@ use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Params, file, file_name};
+use binnacle_platform::http::{FileContent, Id, Json, Params, file, file_name};
 use binnacle_platform::ids::{CallId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_schedule::calls::{FileErrors, csv, ics};
@@ -72,7 +72,7 @@ struct Uploaded {
 /// identifies a call; by default it is made of port and ETA. Past calls are skipped. The file is
 /// stored whole or not at all. Limits: 8 MiB and 50,000 calls.
 #[utoipa::path(post, path = "/port-calls.csv", tag = "adjusting", params(UploadOptions),
-    request_body(content = String, content_type = "text/csv",
+    request_body(content = inline(FileContent), content_type = "text/csv",
         example = "vessel,id,port,eta,etd\n9074729,c1,NLRTM,2026-12-08T06:00:00Z,2026-12-10T18:00:00Z\n"),
     responses((status = 200, body = Uploaded), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 413, body = Problem),
@@ -103,7 +103,7 @@ async fn upload_fleet_csv(
 /// The format is the fleet's; the column `vessel` is optional.
 #[utoipa::path(post, path = "/vessels/{id}/port-calls.csv", tag = "adjusting",
     params(("id" = VesselId, Path), UploadOptions),
-    request_body(content = String, content_type = "text/csv",
+    request_body(content = inline(FileContent), content_type = "text/csv",
         example = "id,port,eta,etd\nc1,NLRTM,2026-12-08T06:00:00Z,2026-12-10T18:00:00Z\n"),
     responses((status = 200, body = Uploaded), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
@@ -168,7 +168,7 @@ async fn read_csv(
 /// withdraws its call; past events are skipped.
 #[utoipa::path(post, path = "/vessels/{id}/port-calls.ics", tag = "adjusting",
     params(("id" = VesselId, Path), UploadOptions),
-    request_body(content = String, content_type = "text/calendar",
+    request_body(content = inline(FileContent), content_type = "text/calendar",
         example = "BEGIN:VCALENDAR\r\nVERSION:2.0\r\nPRODID:-//agent//calls//EN\r\nBEGIN:VEVENT\r\nUID:c1@agent.example\r\nDTSTAMP:20261121T000000Z\r\nDTSTART:20261208T060000Z\r\nDTEND:20261210T180000Z\r\nLOCATION:NLRTM\r\nEND:VEVENT\r\nEND:VCALENDAR\r\n"),
     responses((status = 200, body = Uploaded), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
@@ -292,7 +292,7 @@ async fn store_file(
 /// Current and future calls, in the format of uploads.
 #[utoipa::path(get, path = "/vessels/{id}/port-calls.csv", tag = "adjusting",
     params(("id" = VesselId, Path)),
-    responses((status = 200, content_type = "text/csv", body = String),
+    responses((status = 200, content_type = "text/csv", body = inline(FileContent)),
               (status = 401, body = Problem), (status = 404, body = Problem)))]
 async fn export_csv(
     State(app): State<App>,

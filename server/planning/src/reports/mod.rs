@@ -19,7 +19,7 @@ use axum::response::Response;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Json, Params, file, file_name};
+use binnacle_platform::http::{FileContent, Json, Params, file, file_name};
 use chrono::{Datelike, NaiveDate};
 use csv::Table;
 use report::Report;
@@ -83,7 +83,7 @@ async fn find_report(
 
 /// Export a table of the fleet's report as CSV
 #[utoipa::path(get, path = "/reports/fleet.csv", tag = "fleet", params(Range, TableChoice),
-    responses((status = 200, content_type = "text/csv", body = String),
+    responses((status = 200, content_type = "text/csv", body = inline(FileContent)),
               (status = 401, body = Problem), (status = 422, body = Problem)))]
 async fn report_csv(
     State(app): State<App>,
@@ -101,7 +101,7 @@ async fn report_csv(
 ///
 /// Sheets of A4 with due dates, greatest deviations, jobs and savings.
 #[utoipa::path(get, path = "/reports/fleet.pdf", tag = "fleet", params(Range),
-    responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
+    responses((status = 200, content_type = "application/pdf", body = inline(FileContent)),
               (status = 401, body = Problem), (status = 422, body = Problem)))]
 async fn report_pdf(
     State(app): State<App>,

@@ -20,7 +20,11 @@ use std::time::Duration;
 use tracing::error;
 
 /// Monthly report by mail.
-pub const MESSAGE_KIND: DeclaredKind = DeclaredKind::new(Kind::new("report"), Audience::Nobody);
+pub const MESSAGE_KIND: DeclaredKind = DeclaredKind::new(
+    Kind::new("report"),
+    Audience::Nobody,
+    "The monthly report is sent.",
+);
 
 /// Interval between checks for the end of a month.
 const POLL_INTERVAL: Duration = Duration::from_mins(10);

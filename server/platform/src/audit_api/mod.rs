@@ -6,7 +6,7 @@ use crate::access::Auditor;
 use crate::app::App;
 use crate::audit::{self, Filter, Line, Selection};
 use crate::error::{Error, Problem, Result};
-use crate::http::{Json, Page, Params, file, time};
+use crate::http::{FileContent, Json, Page, Params, file, time};
 use crate::time::Time;
 use axum::body::{Body, Bytes};
 use axum::extract::{FromRef, State};
@@ -69,7 +69,7 @@ async fn list_audit(
 
 /// Download the audit log as CSV
 #[utoipa::path(get, path = "/audit.csv", tag = "people", params(Filter),
-    responses((status = 200, content_type = "text/csv", body = String),
+    responses((status = 200, content_type = "text/csv", body = inline(FileContent)),
               (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 422, body = Problem)))]
 async fn audit_csv(

@@ -9,7 +9,7 @@ mod page;
 mod rejections;
 
 pub use amended::{Amended, never_null};
-pub use file::{file, file_name};
+pub use file::{FileContent, file, file_name};
 pub use json::{
     Id, Json, Params, Valid, ValidOrNone, degrees, is_control, optional_text, text, time,
     unknown_name,

@@ -22,6 +22,8 @@ pub struct DeclaredKind {
     pub kind: Kind,
     /// Webhooks that may subscribe to it.
     pub audience: Audience,
+    /// Occasion of such a message, in a sentence.
+    pub occasion: &'static str,
 }
 
 /// Kinds of messages, in the order in which the API lists them: all of the server, or those of
@@ -33,9 +35,13 @@ pub struct MessageKinds {
 }
 
 impl DeclaredKind {
-    /// Declares a kind of message with its audience.
-    pub const fn new(kind: Kind, audience: Audience) -> DeclaredKind {
-        DeclaredKind { kind, audience }
+    /// Declares a kind of message with its audience and occasion.
+    pub const fn new(kind: Kind, audience: Audience, occasion: &'static str) -> DeclaredKind {
+        DeclaredKind {
+            kind,
+            audience,
+            occasion,
+        }
     }
 }
 
@@ -50,6 +56,11 @@ impl MessageKinds {
             kinds: kinds.into_iter().collect(),
             firms_subject,
         }
+    }
+
+    /// Returns all kinds, as declared.
+    pub fn iter(&self) -> impl Iterator<Item = &DeclaredKind> {
+        self.kinds.iter()
     }
 
     /// Returns the names of all kinds.

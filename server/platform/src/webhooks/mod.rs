@@ -9,12 +9,14 @@
 
 mod announce;
 mod kinds;
+mod message;
 mod send;
 mod store;
 mod webhook;
 
 pub use announce::announce;
 pub use kinds::{Audience, DeclaredKind, MessageKinds};
+pub use message::{TEST, TestMessage};
 pub use send::{SIGNATURE_HEADER, Sender};
 
 use crate::access::{PartyReader, PartyWriter};
@@ -24,11 +26,10 @@ use crate::error::{Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid};
 use crate::idempotency::{self, Key};
 use crate::ids::{DeliveryId, WebhookId};
-use crate::outbox::{self, Channel, Delivery, DeliveryList, Filter, Kind, Message};
+use crate::outbox::{self, Channel, Delivery, DeliveryList, Filter};
 use crate::secret;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
-use serde_json::json;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use webhook::{MadeWebhook, NewWebhook, Webhook, WebhookList};
@@ -170,16 +171,9 @@ async fn test_webhook(
     Id(id): Id<WebhookId>,
 ) -> Result<(StatusCode, Json<Delivery>)> {
     store::must_find(&app.db, writer.tenant, id).await?;
-    let now = app.clock.now();
-    let message = DeliveryId::new();
-    let body = json!({ "id": message, "kind": Kind::TEST, "at": now }).to_string();
-    let message = Message {
-        id: message,
-        kind: Kind::TEST,
-        about: None,
-        body,
-    };
-    let queued = outbox::queue_one(&request, id.0, &message, now.into()).await?;
+    let now = app.clock.now().into();
+    let message = TestMessage::new(now).queued()?;
+    let queued = outbox::queue_one(&request, id.0, &message, now).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }
 

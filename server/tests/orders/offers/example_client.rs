@@ -106,7 +106,7 @@ async fn openssl(folder: &Path, arguments: &[&str]) -> Vec<u8> {
 }
 
 /// Offers an order to a firm of its own; returns the firm's adjuster.
-async fn offered(server: &TestServer) -> (Job, Person) {
+pub(crate) async fn offered(server: &TestServer) -> (Job, Person) {
     let job = Job::begin(server).await;
     let (firm, rosa) = job.person.adjuster(server, "rosa").await;
     let offer = json!({ "firms": [firm] });

@@ -2,6 +2,7 @@
 
 mod example_client;
 mod forbidden_requests;
+mod generated_clients;
 mod notices;
 mod races;
 

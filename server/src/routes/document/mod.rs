@@ -4,6 +4,9 @@
 //! media type of RFC 9457. The problems of reading a request are listed wherever there is
 //! something to read.
 
+mod unions;
+mod webhooks;
+
 use axum::http::StatusCode;
 use binnacle_compass::openapi::{allow_unknown_properties, flatten, schema_mut};
 use serde_json::Value;
@@ -11,6 +14,7 @@ use std::mem;
 use utoipa::ToSchema;
 use utoipa::openapi::path::{Operation, ParameterIn};
 use utoipa::openapi::schema::{Object, Schema};
+use utoipa::openapi::security::SecurityRequirement;
 use utoipa::openapi::{OpenApi, RefOr, Response};
 
 /// Adds the fields that one domain's problems carry to the schema `Problem`.
@@ -47,6 +51,7 @@ pub(super) fn correct_schemas(document: &mut OpenApi) {
     binnacle_compass::openapi::correct(document);
     binnacle_adjustment::openapi::correct(document);
     binnacle_schedule::openapi::correct(document);
+    unions::name_variants(document);
     if let Some(coverage) = schema_mut(document, "Coverage") {
         flatten(coverage);
     }
@@ -99,8 +104,9 @@ fn object<'a>(document: &'a mut OpenApi, name: &str) -> &'a mut Object {
     }
 }
 
-/// Adds the details common to all operations.
+/// Adds the webhooks, and the details common to all operations.
 pub(super) fn complete(document: &mut OpenApi) {
+    webhooks::add(document);
     for path in document.paths.paths.values_mut() {
         let changes = [
             &mut path.post,
@@ -111,6 +117,7 @@ pub(super) fn complete(document: &mut OpenApi) {
         for operation in changes.into_iter().flatten() {
             add_problems(operation);
             add_disk_full(operation);
+            require_request_header(operation);
         }
         path.get.iter_mut().for_each(add_problems);
         let all = [
@@ -127,6 +134,19 @@ pub(super) fn complete(document: &mut OpenApi) {
                 }
             }
         }
+    }
+}
+
+/// Demands the header of our own pages for a change by session.
+fn require_request_header(operation: &mut Operation) {
+    let either = [
+        SecurityRequirement::default()
+            .add::<_, [&str; 0], &str>("session", [])
+            .add::<_, [&str; 0], &str>("request", []),
+        SecurityRequirement::new::<_, [&str; 0], &str>("token", []),
+    ];
+    if operation.security.is_none() {
+        operation.security = Some(either.to_vec());
     }
 }
 
@@ -168,6 +188,8 @@ fn add_problems(operation: &mut Operation) {
         ("413", body),
         ("415", json),
         ("422", json),
+        ("429", true),
+        ("500", true),
         ("503", true),
     ] {
         if may_be && !responses.contains_key(status) {
