@@ -42,14 +42,8 @@ fn lines(text: &str) -> Vec<String> {
             .count()
     };
     let events = begun("BEGIN:VEVENT");
-    for needed in [
-        "END:VEVENT",
-        "UID:",
-        "DTSTAMP:",
-        "DTSTART:",
-        "SEQUENCE:",
-        "STATUS:",
-    ] {
+    assert_eq!(begun("DTSTAMP:"), events + begun("BEGIN:VALARM"));
+    for needed in ["END:VEVENT", "UID:", "DTSTART:", "SEQUENCE:", "STATUS:"] {
         assert_eq!(begun(needed), events, "{needed}");
     }
     unfolded
@@ -57,9 +51,9 @@ fn lines(text: &str) -> Vec<String> {
 
 /// Returns a property of a calendar's only event.
 fn property(lines: &[String], key: &str) -> String {
-    let mut found = lines
-        .iter()
-        .filter_map(|line| line.strip_prefix(&format!("{key}:")));
+    let of_event = lines.iter().take_while(|line| *line != "BEGIN:VALARM");
+    let prefix = format!("{key}:");
+    let mut found = of_event.filter_map(|line| line.strip_prefix(&prefix));
     let value = found
         .next()
         .unwrap_or_else(|| panic!("no {key} in {lines:?}"));
@@ -137,12 +131,21 @@ async fn an_event_keeps_its_uid_and_its_sequence_grows(server: TestServer) {
     assert!(sequence(&after) > sequence(&before));
     assert!(property(&after, "DTSTAMP") > property(&before, "DTSTAMP"));
     assert_eq!(property(&after, "STATUS"), "CONFIRMED");
+    // Of an agreed job both are reminded a day before.
+    let alarms = |lines: &[String]| {
+        let alarms = lines.iter().filter(|line| *line == "BEGIN:VALARM");
+        alarms.count()
+    };
+    assert_eq!((alarms(&before), alarms(&after)), (0, 1));
+    let is_a_day_before = |line: &String| line.starts_with("TRIGGER") && line.ends_with(":-P1D");
+    assert!(after.iter().any(is_a_day_before), "{after:?}");
     parties
         .post(&parties.ada, "/cancel", &json!({ "text": "sold" }))
         .await
         .good();
     let cancelled = lines(&read_feed(&server, &made).await.text);
     assert_eq!(property(&cancelled, "STATUS"), "CANCELLED");
+    assert_eq!(alarms(&cancelled), 0);
     server.finish().await;
 }
 

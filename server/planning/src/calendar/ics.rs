@@ -12,8 +12,11 @@ use binnacle_platform::time::Time;
 use binnacle_schedule::input::JOB_H;
 use binnacle_schedule::ports::{self, PortCode};
 use chrono::{DateTime, NaiveDate, TimeDelta, Utc};
-use icalendar::{Calendar, Component, Event, EventLike, EventStatus, Property};
+use icalendar::{Alarm, Calendar, Component, Event, EventLike, EventStatus, Property, Trigger};
 use serde::Deserialize;
+
+/// Time from the reminder of an agreed job to the job.
+const REMINDER: TimeDelta = TimeDelta::days(1);
 
 /// Returns the calendar of some events.
 pub(super) fn render_calendar(name: &str, events: impl Iterator<Item = Event>) -> String {
@@ -53,8 +56,14 @@ pub(super) fn render_orders(
 }
 
 /// Returns port calls as events.
-pub(super) fn render_calls(calls: &[CalendarCall]) -> anyhow::Result<impl Iterator<Item = Event>> {
-    let all: anyhow::Result<Vec<Event>> = calls.iter().map(render_call).collect();
+pub(super) fn render_calls(
+    calls: &[CalendarCall],
+    public_url: Option<&str>,
+) -> anyhow::Result<impl Iterator<Item = Event>> {
+    let all: anyhow::Result<Vec<Event>> = calls
+        .iter()
+        .map(|one| render_call(one, public_url))
+        .collect();
     Ok(all?.into_iter())
 }
 
@@ -70,7 +79,7 @@ pub(super) fn render_due_dates(
     Ok(all?.into_iter())
 }
 
-fn render_call(call: &CalendarCall) -> anyhow::Result<Event> {
+fn render_call(call: &CalendarCall, public_url: Option<&str>) -> anyhow::Result<Event> {
     let port = PortCode::parse(&call.port).ok().and_then(ports::find);
     let port = port.map_or_else(
         || call.port.clone(),
@@ -112,6 +121,10 @@ fn render_call(call: &CalendarCall) -> anyhow::Result<Event> {
         } else {
             EventStatus::Tentative
         });
+    if let Some(url) = public_url {
+        let url = url.trim_end_matches('/');
+        event.url(&format!("{url}/vessels/{}", call.vessel_id));
+    }
     Ok(event.done())
 }
 
@@ -177,6 +190,14 @@ fn render_order(order: &CalendarOrder, public_url: Option<&str>) -> anyhow::Resu
         .location(&place)
         .description(&describe_order(order))
         .status(event_status(order));
+    // Who has agreed on a job is reminded of it; nobody of one that may not take place.
+    if order.state == State::Accepted {
+        let words = format!("Adjust {}, {}", order.compass_name, order.vessel_name);
+        let mut alarm = Alarm::display(&words, Trigger::before_start(REMINDER));
+        // Without it the alarm would have the present time, and equal orders other bytes.
+        alarm.timestamp(to_utc(entry.at)?);
+        event.alarm(alarm);
+    }
     if let Some(url) = public_url {
         let url = url.trim_end_matches('/');
         event.url(&format!("{url}/work-orders/{}", order.id));

@@ -209,7 +209,7 @@ async fn calendar(State(app): State<App>, scope: Scope) -> Result<Response> {
     };
     let public_url = app.config.mail.public_url.as_deref();
     let events = ics::render_orders(&found, public_url)?
-        .chain(ics::render_calls(&calls)?)
+        .chain(ics::render_calls(&calls, public_url)?)
         .chain(ics::render_due_dates(&due, public_url)?);
     let text = ics::render_calendar(&scope.name, events);
     let headers = [

@@ -24,6 +24,7 @@ const MAX_CALLS: i64 = 10_000;
 #[derive(Clone, Debug, sqlx::FromRow)]
 pub(super) struct CalendarCall {
     pub id: CallId,
+    pub vessel_id: VesselId,
     pub vessel_name: String,
     pub port: String,
     pub berth: Option<String>,
@@ -203,7 +204,7 @@ pub(super) async fn list_calls(
     rows!(
         db,
         CalendarCall,
-        "SELECT c.id, v.name AS vessel_name, c.port, c.berth, c.eta, c.eta_uncertainty_h, c.etd,
+        "SELECT c.id, c.vessel_id, v.name AS vessel_name, c.port, c.berth, c.eta, c.eta_uncertainty_h, c.etd,
                 c.etd_uncertainty_h, c.revision, c.created_at, c.revised_at, c.withdrawn_at,
                 c.withdrawal_reason
          FROM port_calls c
