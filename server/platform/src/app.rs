@@ -4,6 +4,7 @@ use crate::clock::Clock;
 use crate::config::Serve;
 use crate::db::{Db, Pools, Workload};
 use crate::events::{Announcer, Event, Live, Places};
+use crate::http::rate::RequestRates;
 use crate::identity_provider::Provider;
 use crate::outage::Disk;
 use crate::password::Hashing;
@@ -31,6 +32,8 @@ pub struct App {
     pub announcer: Arc<Announcer>,
     /// Wakes the worker when there is a new job.
     pub work: Arc<Notify>,
+    /// Requests of each caller in this minute.
+    pub request_rates: Arc<RequestRates>,
     /// Hashing of passwords, by a few at a time.
     pub hashing: Arc<Hashing>,
     /// Cached metadata of the OpenID Connect provider.
@@ -53,6 +56,7 @@ impl App {
             event_streams: Places::default(),
             announcer: Arc::default(),
             work: Arc::new(Notify::new()),
+            request_rates: Arc::default(),
             hashing: Arc::default(),
             provider: Arc::default(),
             stopping: CancellationToken::new(),

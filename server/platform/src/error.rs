@@ -62,6 +62,9 @@ pub enum Error {
     /// Idempotency key that was used for another request.
     #[error("this idempotency key was used for another request")]
     KeyReused,
+    /// Content that was changed since the caller read it.
+    #[error("it was changed since you read it; read it again and repeat your change")]
+    Changed,
     /// Resource that existed but can no longer be used.
     #[error("{0}")]
     Gone(&'static str),
@@ -74,6 +77,14 @@ pub enum Error {
     /// Too many wrong passwords.
     #[error("too many failed attempts; try again in {retry_after_s} s")]
     Throttled {
+        /// Seconds to wait.
+        retry_after_s: u64,
+    },
+    /// More requests in a minute than one caller may make.
+    #[error("more than {limit} requests in a minute; try again in {retry_after_s} s")]
+    TooManyRequests {
+        /// Most requests in a minute.
+        limit: u32,
         /// Seconds to wait.
         retry_after_s: u64,
     },
@@ -158,10 +169,40 @@ pub struct Problem {
     pub status: u16,
     /// Details of this occurrence.
     pub detail: String,
+    /// Mistakes in the request's body, each with its place.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub errors: Vec<Mistake>,
     /// Fields of one kind of problem only; the document lists them by domain.
     #[serde(flatten)]
     #[schema(ignore)]
     pub extra: Map<String, Value>,
+}
+
+/// Mistake in a request's body.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Mistake {
+    /// JSON pointer (RFC 6901) to the value; empty for the whole body.
+    #[schema(example = "/terms/fee_eur")]
+    pub pointer: String,
+    /// What is wrong with it.
+    pub detail: String,
+}
+
+impl Mistake {
+    /// A mistake in a field, whose parts are named like `terms.fee_eur` or `kinds[0]`.
+    fn in_field(field: &str, detail: &str) -> Mistake {
+        let parts = field
+            .split(['.', '['])
+            .map(|part| part.trim_end_matches(']'));
+        let pointer = match field {
+            "body" => String::new(),
+            _ => parts.map(|part| format!("/{part}")).collect(),
+        };
+        Mistake {
+            pointer,
+            detail: detail.to_owned(),
+        }
+    }
 }
 
 impl Error {
@@ -202,6 +243,11 @@ impl Error {
                 "idempotency-key-reused",
                 "Idempotency key used before",
             ),
+            Error::Changed => (
+                StatusCode::PRECONDITION_FAILED,
+                "changed",
+                "Changed meanwhile",
+            ),
             Error::Gone(_) => (StatusCode::GONE, "gone", "No longer valid"),
             Error::TooLarge(_) => (StatusCode::PAYLOAD_TOO_LARGE, "too-large", "Body too large"),
             Error::UnsupportedMediaType(_) => (
@@ -213,6 +259,11 @@ impl Error {
                 StatusCode::TOO_MANY_REQUESTS,
                 "throttled",
                 "Too many attempts",
+            ),
+            Error::TooManyRequests { .. } => (
+                StatusCode::TOO_MANY_REQUESTS,
+                "too-many-requests",
+                "Too many requests",
             ),
             Error::TooManyStreams(_) => (
                 StatusCode::TOO_MANY_REQUESTS,
@@ -250,6 +301,10 @@ impl IntoResponse for Error {
             title: title.to_owned(),
             status: status.as_u16(),
             detail: self.to_string(),
+            errors: match &self {
+                Error::Invalid { field, detail } => vec![Mistake::in_field(field, detail)],
+                _ => Vec::new(),
+            },
             extra: match &self {
                 Error::Domain(problem) => problem.extra.clone(),
                 _ => Map::new(),
@@ -261,7 +316,12 @@ impl IntoResponse for Error {
             header::CONTENT_TYPE,
             HeaderValue::from_static("application/problem+json"),
         );
+        if status == StatusCode::UNAUTHORIZED {
+            let challenge = HeaderValue::from_static("Bearer realm=\"Binnacle\"");
+            headers.insert(header::WWW_AUTHENTICATE, challenge);
+        }
         if let Error::Throttled { retry_after_s }
+        | Error::TooManyRequests { retry_after_s, .. }
         | Error::Unavailable { retry_after_s }
         | Error::DiskFull { retry_after_s } = self
         {

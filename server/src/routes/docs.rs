@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::fmt::Write;
 use std::sync::LazyLock;
 
-static DOCUMENT: LazyLock<Value> = LazyLock::new(|| {
+pub(super) static DOCUMENT: LazyLock<Value> = LazyLock::new(|| {
     serde_json::to_value(super::openapi()).expect("the document is made of strings and maps")
 });
 static PAGE: LazyLock<String> = LazyLock::new(|| render(&DOCUMENT));

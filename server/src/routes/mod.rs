@@ -1,7 +1,9 @@
 //! All routes, their OpenAPI document and their middleware.
 
+mod body;
 mod docs;
 mod document;
+mod query;
 
 use crate::kinds::{event_kinds, message_kinds, notice_kinds};
 use crate::state::ServerState;
@@ -21,7 +23,7 @@ use binnacle_orders::work_orders::NotAdjustableFields;
 use binnacle_orders::{api as orders_api, firms};
 use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
 use binnacle_platform::db::Workload;
-use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers};
+use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers, rate, spreadsheet};
 use binnacle_platform::{
     audit, audit_api, error, event_stream, events, mail, oidc, session, session_api, users,
     webhooks,
@@ -50,7 +52,7 @@ const PATIENCE: Duration = Duration::from_mins(2);
             east-positive degrees; fields are nanotesla. Absence and refusal look the same (404) \
             across operators and firms.",
     ),
-    components(schemas(error::Problem)),
+    components(schemas(error::Problem, error::Mistake)),
     security(("session" = []), ("token" = [])),
     modifiers(&Security),
     tags(
@@ -165,6 +167,14 @@ impl Parts {
         document.merge(of_health);
         document.merge(of_agents);
         complete(&mut document);
+        let parameters = query::QueryParameters::of(&document);
+        let people = people
+            .layer(axum::middleware::from_fn(spreadsheet::convert))
+            .layer(axum::middleware::from_fn(body::list_mistakes))
+            .layer(axum::middleware::from_fn_with_state(
+                parameters,
+                query::refuse_unknown,
+            ));
         Parts {
             agents,
             people: with_dashboard(people),
@@ -234,7 +244,8 @@ pub fn router(state: &ServerState) -> Router {
     let parts = Parts::new();
     let mut pages = parts.health;
     pages = if role.serves_people() {
-        pages.merge(parts.people)
+        let limit = axum::middleware::from_fn_with_state(state.app.clone(), rate::limit);
+        pages.merge(parts.people.layer(limit))
     } else {
         pages.fallback(no_such_route)
     };

@@ -144,7 +144,8 @@ async fn the_four_forms_of_a_card_agree_and_are_reproducible(server: TestServer)
             assert_eq!(response.headers()["content-type"], kind);
             let name = response.headers()["content-disposition"].to_str().unwrap();
             let expected = format!(
-                "inline; filename=\"deviation-card-nao-b-victoria-b-standard-compass-v1.{form}\""
+                "inline; filename=\"deviation-card-nao-b-victoria-b-standard-compass-v1.{form}\"; \
+                 filename*=UTF-8''deviation-card%20Nao%20b%20Victoria%20b%20Standard%20compass%20v1.{form}"
             );
             assert_eq!(name, expected);
             response.bytes().await.unwrap()

@@ -73,7 +73,8 @@ async fn the_book_has_an_entry_for_each_watch_and_large_alteration(server: TestS
             .to_owned();
         assert_eq!(
             name,
-            "inline; filename=\"deviation-book-nao-standard-compass.pdf\""
+            "inline; filename=\"deviation-book-nao-standard-compass.pdf\"; \
+             filename*=UTF-8''deviation-book%20Nao%20Standard%20compass.pdf"
         );
         response.bytes().await.unwrap()
     };

@@ -123,7 +123,8 @@ async fn the_report_files_agree_with_the_report(server: TestServer) {
     let name = due.headers["content-disposition"].to_str().unwrap();
     assert_eq!(
         name,
-        "inline; filename=\"compass-due-ada-2026-11-01-2026-11-21.csv\""
+        "inline; filename=\"compass-due-ada-2026-11-01-2026-11-21.csv\"; \
+         filename*=UTF-8''compass%20due%20ada%202026-11-01%202026-11-21.csv"
     );
     let lines: Vec<&str> = due.text.lines().collect();
     assert!(lines[0].starts_with("vessel_name,compass_name,due_on,urgency,reason,"));

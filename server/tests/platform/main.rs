@@ -8,6 +8,7 @@ mod events;
 mod headers;
 mod mail;
 mod people;
+mod requests;
 mod second_factor;
 mod secrets;
 mod sessions;

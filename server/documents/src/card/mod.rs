@@ -36,7 +36,7 @@ use binnacle_fleet::vessels;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{FileContent, Id, Json, Params, file, file_name, time};
+use binnacle_platform::http::{FileContent, FileName, Id, Json, Params, file, time};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 use contents::{CardPlace, CardVessel};
@@ -276,9 +276,9 @@ fn place(position: Position, at: Time, settings: &VesselSettings) -> Result<Card
     })
 }
 
-fn name(card: &Card, ending: &str) -> String {
+fn name(card: &Card, ending: &'static str) -> FileName {
     let version = format!("v{}", card.model.version);
-    file_name(
+    FileName::new(
         &[
             "deviation-card",
             &card.vessel.name,

@@ -23,7 +23,7 @@ use binnacle_fleet::vessels;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{FileContent, Id, Json, Page, Params, file, file_name, time};
+use binnacle_platform::http::{FileContent, FileName, Id, Json, Page, Params, file, time};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 use entry::{Entry, EntryKey};
@@ -223,8 +223,8 @@ fn entry_key(micros: i64, azimuth: Uuid) -> Result<EntryKey> {
 }
 
 impl Book {
-    fn name(&self, ending: &str) -> String {
-        file_name(&["deviation-book", &self.vessel, &self.compass], ending)
+    fn name(&self, ending: &'static str) -> FileName {
+        FileName::new(&["deviation-book", &self.vessel, &self.compass], ending)
     }
 }
 

@@ -25,7 +25,9 @@ use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::db::DomainEvent;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Page, Params, Valid, optional_text};
+use binnacle_platform::http::{
+    Id, IfMatch, Json, Page, Params, Valid, Version, Versioned, optional_text,
+};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{BinnacleId, CompassId, VesselId};
 use binnacle_platform::session;
@@ -98,18 +100,26 @@ struct RevisionReason {
 /// See a compass's binnacle
 #[utoipa::path(get, path = "/vessels/{id}/compasses/{compass}/binnacle", tag = "adjusting",
     params(("id" = VesselId, Path), ("compass" = CompassId, Path)),
-    responses((status = 200, body = BinnacleRevision), (status = 401, body = Problem),
+    responses((status = 200, body = BinnacleRevision, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn find_binnacle(
     State(app): State<App>,
     reader: Reader,
     Id((vessel, compass)): Id<(VesselId, CompassId)>,
-) -> Result<Json<BinnacleRevision>> {
+) -> Result<Versioned<BinnacleRevision>> {
     must_be_of_fleet(&app, reader.operator, vessel, compass).await?;
+    find_current(&app, vessel, compass).await
+}
+
+async fn find_current(
+    app: &App,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Versioned<BinnacleRevision>> {
     let found = store::current(&app.db, vessel, compass).await?;
-    Ok(Json(
-        found.ok_or(Error::NotFound("binnacle"))?.into_revision(),
-    ))
+    let found = found.ok_or(Error::NotFound("binnacle"))?;
+    let version = Version::of(&found.revision)?;
+    Ok(Versioned(found.into_revision(), version))
 }
 
 /// Write a compass's binnacle
@@ -117,9 +127,9 @@ async fn find_binnacle(
 /// The whole of it: its type, the correctors on board and how they stand. What was
 /// written before stays among its revisions; the same again makes no new one.
 #[utoipa::path(put, path = "/vessels/{id}/compasses/{compass}/binnacle", tag = "adjusting",
-    params(("id" = VesselId, Path), ("compass" = CompassId, Path), RevisionReason, Key),
+    params(("id" = VesselId, Path), ("compass" = CompassId, Path), RevisionReason, IfMatch, Key),
     request_body = BinnacleForm,
-    responses((status = 200, body = BinnacleRevision), (status = 401, body = Problem),
+    responses((status = 200, body = BinnacleRevision, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem)))]
 async fn put_binnacle(
@@ -128,9 +138,10 @@ async fn put_binnacle(
     writer: Writer,
     Id((vessel, compass)): Id<(VesselId, CompassId)>,
     Params(why): Params<RevisionReason>,
+    if_match: IfMatch,
     key: Key,
     Valid(form): Valid<BinnacleForm>,
-) -> Result<Json<BinnacleRevision>> {
+) -> Result<Versioned<BinnacleRevision>> {
     must_be_of_fleet(&app, writer.operator, vessel, compass).await?;
     let request_hash = idempotency::request_hash(&format!("binnacle of {compass}"), &form)?;
     let reason = optional_text("reason", why.reason.as_deref())?;
@@ -143,6 +154,8 @@ async fn put_binnacle(
         .once(&mut tx, writer.operator, &request_hash, new_id.0, now)
         .await?;
     if made == new_id.0 {
+        vessels::lock(&mut tx, writer.operator, vessel).await?;
+        if_match.check(&store::current_version(&mut tx, vessel, compass).await?)?;
         tx.publish(&BinnacleAmended { vessel, compass }).await?;
         let author = Author {
             id: writer.user.0,
@@ -153,10 +166,7 @@ async fn put_binnacle(
         store::insert(&mut tx, vessel, compass, new_id, &binnacle, why, &author).await?;
         tx.commit().await?;
     }
-    let found = store::current(&app.db, vessel, compass).await?;
-    Ok(Json(
-        found.ok_or(Error::NotFound("binnacle"))?.into_revision(),
-    ))
+    find_current(&app, vessel, compass).await
 }
 
 /// List the revisions of a compass's binnacle

@@ -4,6 +4,7 @@ use crate::compasses::Role;
 use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use binnacle_platform::error::Result;
+use binnacle_platform::http::Version;
 use binnacle_platform::ids::{BinnacleId, CompassId, OperatorId, VesselId};
 use binnacle_platform::time::Time;
 use uuid::Uuid;
@@ -54,6 +55,25 @@ pub async fn current(
     compass: CompassId,
 ) -> DbResult<Option<StoredRevision>> {
     Ok(list(db, vessel, compass, None, 1).await?.pop())
+}
+
+/// Returns the version of a compass's binnacle as a transaction sees it.
+pub(super) async fn current_version(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Version> {
+    let found = row!(
+        in tx,
+        (i64,),
+        "SELECT revision FROM binnacles
+         WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY revision DESC
+         LIMIT 1",
+        vessel,
+        compass
+    )?;
+    Version::of(&found.map_or(0, |(revision,)| revision))
 }
 
 /// Lists the revisions before a given one, the newest first.

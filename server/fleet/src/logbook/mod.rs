@@ -27,7 +27,9 @@ use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone, text};
+use binnacle_platform::http::{
+    Id, IfMatch, Json, Page, Params, Valid, ValidOrNone, Version, Versioned, text,
+};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{EntryId, VesselId};
 use entry::{Filter, LogbookEntry, LogbookList, NewEntry, RevisedEntry, Withdrawal};
@@ -107,26 +109,26 @@ async fn report_entry(
 /// See an entry with all its revisions
 #[utoipa::path(get, path = "/vessels/{id}/logbook/{entry}", tag = "fleet",
     params(("id" = VesselId, Path), ("entry" = EntryId, Path)),
-    responses((status = 200, body = RevisedEntry), (status = 401, body = Problem),
+    responses((status = 200, body = RevisedEntry, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn find_entry(
     State(app): State<App>,
     reader: Reader,
     Id((vessel, id)): Id<(VesselId, EntryId)>,
-) -> Result<Json<RevisedEntry>> {
+) -> Result<Versioned<RevisedEntry>> {
     vessels::must_be_in_fleet(&app.db, reader.operator, vessel).await?;
-    Ok(Json(RevisedEntry {
-        entry: store::must_find(&app.db, vessel, id).await?,
-        revisions: store::revisions(&app.db, vessel, id).await?,
-    }))
+    let entry = store::must_find(&app.db, vessel, id).await?;
+    let version = Version::of(&entry.revision)?;
+    let revisions = store::revisions(&app.db, vessel, id).await?;
+    Ok(Versioned(RevisedEntry { entry, revisions }, version))
 }
 
 /// Amend an entry
 ///
 /// Absent fields stay as they are; null removes a value. The earlier revision is kept.
 #[utoipa::path(patch, path = "/vessels/{id}/logbook/{entry}", tag = "fleet",
-    params(("id" = VesselId, Path), ("entry" = EntryId, Path)), request_body = Amendment,
-    responses((status = 200, body = LogbookEntry), (status = 401, body = Problem),
+    params(("id" = VesselId, Path), ("entry" = EntryId, Path), IfMatch), request_body = Amendment,
+    responses((status = 200, body = LogbookEntry, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 410, description = "The entry is withdrawn", body = Problem),
               (status = 422, body = Problem)))]
@@ -135,8 +137,9 @@ async fn amend_entry(
     request: RequestContext,
     writer: Writer,
     Id((vessel, id)): Id<(VesselId, EntryId)>,
+    if_match: IfMatch,
     Valid(amendment): Valid<Amendment>,
-) -> Result<Json<LogbookEntry>> {
+) -> Result<Versioned<LogbookEntry>> {
     vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
     let now = app.clock.now();
     let mut change = Change::begin(&app, &request, vessel, now.into()).await?;
@@ -144,13 +147,16 @@ async fn amend_entry(
     if current.withdrawn_at.is_some() {
         return Err(Error::Gone("this entry is withdrawn"));
     }
+    if_match.check(&Version::of(&current.revision)?)?;
     let amended = amendment.applied_to(current.content.clone()).checked(now)?;
     if amended != current.content {
         let author = Author::user(change.tx(), writer.user, now.into()).await?;
         store::revise(change.tx(), &current, &amended, &author).await?;
         change.commit().await?;
     }
-    Ok(Json(store::must_find(&app.db, vessel, id).await?))
+    let entry = store::must_find(&app.db, vessel, id).await?;
+    let version = Version::of(&entry.revision)?;
+    Ok(Versioned(entry, version))
 }
 
 /// Withdraw an entry

@@ -48,7 +48,7 @@ struct Row {
 pub(super) struct LockedEntry {
     vessel_id: VesselId,
     id: EntryId,
-    revision: i64,
+    pub(super) revision: i64,
     /// Its content.
     pub(super) content: NewEntry,
     /// The latest revision from on board; none for an entry reported on shore.

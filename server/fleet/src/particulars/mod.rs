@@ -8,9 +8,9 @@ use axum::extract::{FromRef, State};
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
-use binnacle_platform::db::{Db, DomainEvent, Tx, execute, row};
+use binnacle_platform::db::{DomainEvent, Tx, execute, row};
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Valid, optional_text};
+use binnacle_platform::http::{Id, IfMatch, Valid, Version, Versioned, optional_text};
 use binnacle_platform::ids::{OperatorId, VesselId};
 use binnacle_platform::session;
 use binnacle_platform::time::Time;
@@ -74,15 +74,16 @@ pub struct Particulars {
 /// See a vessel's particulars for the rules on adjusting
 #[utoipa::path(get, path = "/vessels/{id}/particulars", tag = "adjusting",
     params(("id" = VesselId, Path)),
-    responses((status = 200, body = Particulars), (status = 401, body = Problem),
+    responses((status = 200, body = Particulars, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn find_particulars(
     State(app): State<App>,
     reader: Reader,
     Id(vessel): Id<VesselId>,
-) -> Result<Json<Particulars>> {
+) -> Result<Versioned<Particulars>> {
     vessels::must_be_in_fleet(&app.db, reader.operator, vessel).await?;
-    Ok(Json(find(&app.db, vessel).await?))
+    let stored = row!(&app.db, (String,), FIND, vessel)?;
+    versioned(particulars_of(stored)?)
 }
 
 /// Set a vessel's particulars for the rules on adjusting
@@ -90,8 +91,8 @@ async fn find_particulars(
 /// A fact that is left out or null is unknown, and binds the vessel: to adjust too early costs a
 /// fee, to adjust too late a detention.
 #[utoipa::path(put, path = "/vessels/{id}/particulars", tag = "adjusting",
-    params(("id" = VesselId, Path)), request_body = Particulars,
-    responses((status = 200, body = Particulars), (status = 401, body = Problem),
+    params(("id" = VesselId, Path), IfMatch), request_body = Particulars,
+    responses((status = 200, body = Particulars, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem)))]
 async fn set_particulars(
@@ -99,12 +100,16 @@ async fn set_particulars(
     request: RequestContext,
     writer: Writer,
     Id(vessel): Id<VesselId>,
+    if_match: IfMatch,
     Valid(particulars): Valid<Particulars>,
-) -> Result<Json<Particulars>> {
+) -> Result<Versioned<Particulars>> {
     vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
     let particulars = particulars.checked()?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
+    vessels::lock(&mut tx, writer.operator, vessel).await?;
+    let stored = row!(in &mut tx, (String,), FIND, vessel)?;
+    if_match.check(&Version::of(&particulars_of(stored)?)?)?;
     let name = session::name_of(&mut tx, writer.user).await?;
     put(&mut tx, vessel, &particulars, &name, now).await?;
     tx.publish(&ParticularsChanged {
@@ -113,17 +118,19 @@ async fn set_particulars(
     })
     .await?;
     tx.commit().await?;
-    Ok(Json(particulars))
+    versioned(particulars)
 }
 
-async fn find(db: &Db, vessel: VesselId) -> Result<Particulars> {
-    let found = row!(
-        db,
-        (String,),
-        "SELECT particulars FROM vessel_particulars WHERE vessel_id = $1 ORDER BY vessel_id",
-        vessel
-    )?;
-    Ok(found.map_or_else(
+fn versioned(particulars: Particulars) -> Result<Versioned<Particulars>> {
+    let version = Version::of(&particulars)?;
+    Ok(Versioned(particulars, version))
+}
+
+const FIND: &str =
+    "SELECT particulars FROM vessel_particulars WHERE vessel_id = $1 ORDER BY vessel_id";
+
+fn particulars_of(stored: Option<(String,)>) -> Result<Particulars> {
+    Ok(stored.map_or_else(
         || Ok(Particulars::default()),
         |(text,)| serde_json::from_str(&text),
     )?)

@@ -19,7 +19,7 @@ use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Valid};
+use binnacle_platform::http::{Id, IfMatch, Valid, Version, Versioned};
 use binnacle_platform::ids::VesselId;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -36,21 +36,21 @@ where
 /// See a vessel's settings
 #[utoipa::path(get, path = "/vessels/{id}/settings", tag = "fleet",
     params(("id" = VesselId, Path)),
-    responses((status = 200, body = VesselSettings), (status = 401, body = Problem),
+    responses((status = 200, body = VesselSettings, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn find_settings(
     State(app): State<App>,
     reader: Reader,
     Id(id): Id<VesselId>,
-) -> Result<Json<VesselSettings>> {
+) -> Result<Versioned<VesselSettings>> {
     vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
-    Ok(Json(find(&app.db, id).await?))
+    versioned(find(&app.db, id).await?)
 }
 
 /// Change a vessel's settings
 #[utoipa::path(put, path = "/vessels/{id}/settings", tag = "fleet",
-    params(("id" = VesselId, Path)), request_body = VesselSettings,
-    responses((status = 200, body = VesselSettings), (status = 401, body = Problem),
+    params(("id" = VesselId, Path), IfMatch), request_body = VesselSettings,
+    responses((status = 200, body = VesselSettings, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem)))]
 async fn change_settings(
@@ -58,8 +58,9 @@ async fn change_settings(
     request: RequestContext,
     writer: Writer,
     Id(id): Id<VesselId>,
+    if_match: IfMatch,
     Valid(new): Valid<VesselSettings>,
-) -> Result<Json<VesselSettings>> {
+) -> Result<Versioned<VesselSettings>> {
     vessels::must_be_in_fleet(&app.db, writer.operator, id).await?;
     if !(0.0..=10.0).contains(&new.analysis.reference_constant_sd_deg) {
         return Err(Error::Invalid {
@@ -73,9 +74,16 @@ async fn change_settings(
     new.alerts.checked()?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
+    vessels::lock(&mut tx, writer.operator, id).await?;
+    if_match.check(&Version::of(&store::find_in(&mut tx, id).await?)?)?;
     store::change(&mut tx, id, &new, now).await?;
     analysis_queue::enqueue(&mut tx, id, now, 0.0).await?;
     tx.commit().await?;
     app.work.notify_one();
-    Ok(Json(find(&app.db, id).await?))
+    versioned(find(&app.db, id).await?)
+}
+
+fn versioned(settings: VesselSettings) -> Result<Versioned<VesselSettings>> {
+    let version = Version::of(&settings)?;
+    Ok(Versioned(settings, version))
 }

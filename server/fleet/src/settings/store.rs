@@ -9,16 +9,23 @@ use binnacle_platform::ids::VesselId;
 use binnacle_platform::time::Time;
 use binnacle_wire::messages::Settings;
 
+type StoredSettings = (i64, String, String, String);
+
+const FIND: &str = "SELECT version, agent, analysis, alerts FROM vessel_settings
+     WHERE vessel_id = $1
+     ORDER BY vessel_id";
+
 /// Returns the vessel's settings, or the defaults.
 pub async fn find(db: &Db, vessel: VesselId) -> Result<VesselSettings> {
-    let stored = row!(
-        db,
-        (i64, String, String, String),
-        "SELECT version, agent, analysis, alerts FROM vessel_settings
-         WHERE vessel_id = $1
-         ORDER BY vessel_id",
-        vessel
-    )?;
+    settings_of(row!(db, StoredSettings, FIND, vessel)?)
+}
+
+/// Returns the vessel's settings as a transaction sees them, or the defaults.
+pub(super) async fn find_in(tx: &mut Tx, vessel: VesselId) -> Result<VesselSettings> {
+    settings_of(row!(in tx, StoredSettings, FIND, vessel)?)
+}
+
+fn settings_of(stored: Option<StoredSettings>) -> Result<VesselSettings> {
     let Some((version, agent, analysis, alerts)) = stored else {
         return Ok(VesselSettings {
             agent: Settings::default(),

@@ -17,7 +17,7 @@ use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Problem, Result};
-use binnacle_platform::http::{Id, Json, Page, Params, Valid};
+use binnacle_platform::http::{Id, IfMatch, Json, Page, Params, Valid, Version, Versioned};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{OperatorId, VesselId};
 use binnacle_platform::severity::Severity;
@@ -149,7 +149,7 @@ async fn create_vessel(
     writer: Writer,
     key: Key,
     Valid(new): Valid<NewVessel>,
-) -> Result<(StatusCode, Json<Vessel>)> {
+) -> Result<(StatusCode, Versioned<Vessel>)> {
     let request_hash = idempotency::request_hash("vessel", &new)?;
     let new = new.checked()?;
     let now = app.clock.now().into();
@@ -165,28 +165,28 @@ async fn create_vessel(
     }
     tx.commit().await?;
     let vessel = assemble(&app, writer.operator, VesselId(id)).await?;
-    Ok((StatusCode::CREATED, Json(vessel)))
+    Ok((StatusCode::CREATED, vessel))
 }
 
 /// Find a vessel
 #[utoipa::path(get, path = "/vessels/{id}", tag = "fleet", params(("id" = VesselId, Path)),
-    responses((status = 200, body = Vessel), (status = 401, body = Problem),
+    responses((status = 200, body = Vessel, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn find_vessel(
     State(app): State<App>,
     reader: Reader,
     Id(id): Id<VesselId>,
-) -> Result<Json<Vessel>> {
-    Ok(Json(assemble(&app, reader.operator, id).await?))
+) -> Result<Versioned<Vessel>> {
+    assemble(&app, reader.operator, id).await
 }
 
 /// Amend a vessel
 ///
 /// Absent fields stay as they are; null removes a value. A vessel with a work order under way
 /// cannot go out of service.
-#[utoipa::path(patch, path = "/vessels/{id}", tag = "fleet", params(("id" = VesselId, Path)),
-    request_body = Amendment,
-    responses((status = 200, body = Vessel), (status = 401, body = Problem),
+#[utoipa::path(patch, path = "/vessels/{id}", tag = "fleet",
+    params(("id" = VesselId, Path), IfMatch), request_body = Amendment,
+    responses((status = 200, body = Vessel, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "A work order of the vessel is under way", body = Problem),
               (status = 422, body = Problem)))]
@@ -195,11 +195,13 @@ async fn amend_vessel(
     request: RequestContext,
     writer: Writer,
     Id(id): Id<VesselId>,
+    if_match: IfMatch,
     Valid(amendment): Valid<Amendment>,
-) -> Result<Json<Vessel>> {
+) -> Result<Versioned<Vessel>> {
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
     let vessel = vessels::lock(&mut tx, writer.operator, id).await?;
+    if_match.check(&vessel.version()?)?;
     let events_out = match amendment.in_service {
         Some(in_service) => {
             service::set(&mut tx, writer.operator, &vessel, in_service, now).await?
@@ -212,18 +214,32 @@ async fn amend_vessel(
     for event in events_out {
         app.publish(event);
     }
-    Ok(Json(assemble(&app, writer.operator, id).await?))
+    assemble(&app, writer.operator, id).await
 }
 
-async fn assemble(app: &App, operator: OperatorId, id: VesselId) -> Result<Vessel> {
+async fn assemble(app: &App, operator: OperatorId, id: VesselId) -> Result<Versioned<Vessel>> {
     let row = vessels::must_be_in_fleet(&app.db, operator, id).await?;
     let compasses = compasses::of_vessel(&app.db, id).await?;
     let models = models::current_of_vessel(&app.db, id).await?;
     let open = alerts::count_open(&app.db, operator, id, id).await?;
-    Ok(row.with(&compasses, &models, &open))
+    let version = row.version()?;
+    Ok(Versioned(row.with(&compasses, &models, &open), version))
 }
 
 impl VesselRow {
+    /// Returns the version of what people may edit.
+    fn version(&self) -> Result<Version> {
+        Version::of(&(
+            &self.name,
+            &self.imo_number,
+            &self.call_sign,
+            &self.flag,
+            &self.degaussing,
+            &self.sister_class,
+            self.out_of_service_at,
+        ))
+    }
+
     /// Assembles a vessel from its share of compasses, current models and alert counts.
     fn with(self, compasses: &[Compass], models: &[StoredModel], open: &[OpenCount]) -> Vessel {
         let own = open.iter().filter(|alerts| alerts.vessel_id == self.id);

@@ -32,7 +32,9 @@ use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone, optional_text};
+use binnacle_platform::http::{
+    Id, IfMatch, Json, Page, Params, Valid, ValidOrNone, Version, Versioned, optional_text,
+};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{CallId, OperatorId, VesselId};
 use binnacle_schedule::calls::find_overlap;
@@ -163,18 +165,18 @@ async fn enter_port_call(
 /// See a port call with all its revisions
 #[utoipa::path(get, path = "/vessels/{id}/port-calls/{call}", tag = "adjusting",
     params(("id" = VesselId, Path), ("call" = CallId, Path)),
-    responses((status = 200, body = RevisedCall), (status = 401, body = Problem),
+    responses((status = 200, body = RevisedCall, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn find_port_call(
     State(app): State<App>,
     reader: Reader,
     Id((vessel, id)): Id<(VesselId, CallId)>,
-) -> Result<Json<RevisedCall>> {
+) -> Result<Versioned<RevisedCall>> {
     vessels::must_be_in_fleet(&app.db, reader.operator, vessel).await?;
-    Ok(Json(RevisedCall {
-        call: find_call(&app, reader.operator, vessel, id).await?,
-        revisions: store::revisions(&app.db, vessel, id).await?,
-    }))
+    let call = find_call(&app, reader.operator, vessel, id).await?;
+    let version = Version::of(&call.revision)?;
+    let revisions = store::revisions(&app.db, vessel, id).await?;
+    Ok(Versioned(RevisedCall { call, revisions }, version))
 }
 
 /// Amend a port call
@@ -182,8 +184,8 @@ async fn find_port_call(
 /// A field that is left out stays; null removes a value. The earlier content is kept among the
 /// revisions.
 #[utoipa::path(patch, path = "/vessels/{id}/port-calls/{call}", tag = "adjusting",
-    params(("id" = VesselId, Path), ("call" = CallId, Path)), request_body = Amendment,
-    responses((status = 200, body = PortCall), (status = 401, body = Problem),
+    params(("id" = VesselId, Path), ("call" = CallId, Path), IfMatch), request_body = Amendment,
+    responses((status = 200, body = PortCall, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "It would overlap another call", body = Problem),
               (status = 410, description = "The call is withdrawn", body = Problem),
@@ -193,8 +195,9 @@ async fn amend_port_call(
     request: RequestContext,
     writer: Writer,
     Id((vessel, id)): Id<(VesselId, CallId)>,
+    if_match: IfMatch,
     Valid(amendment): Valid<Amendment>,
-) -> Result<Json<PortCall>> {
+) -> Result<Versioned<PortCall>> {
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
     let known = store::lock(&mut tx, writer.operator, vessel).await?;
@@ -203,11 +206,12 @@ async fn amend_port_call(
     if current.withdrawn_at.is_some() {
         return Err(Error::Gone("this port call is withdrawn"));
     }
+    if_match.check(&Version::of(&current.revision)?)?;
     let before = current.content()?;
     let amended = amendment.applied_to(&before, now)?;
     if amended == before {
         drop(tx);
-        return Ok(Json(find_call(&app, writer.operator, vessel, id).await?));
+        return versioned_call(&app, writer.operator, vessel, id).await;
     }
     check_overlap(&known, Some(id), &amended)?;
     let author = Author::from_user(&mut tx, writer.user, now).await?;
@@ -218,7 +222,7 @@ async fn amend_port_call(
     let new = [moves::new_call(id, &amended)];
     pending.extend(attach_new_calls(&mut tx, vessel, &new, &author.name, now).await?);
     commit(&app, tx, &[vessel], pending, now).await?;
-    Ok(Json(find_call(&app, writer.operator, vessel, id).await?))
+    versioned_call(&app, writer.operator, vessel, id).await
 }
 
 /// Withdraw a port call
@@ -252,6 +256,17 @@ async fn withdraw_port_call(
         drop(tx);
     }
     Ok(Json(find_call(&app, writer.operator, vessel, id).await?))
+}
+
+async fn versioned_call(
+    app: &App,
+    operator: OperatorId,
+    vessel: VesselId,
+    id: CallId,
+) -> Result<Versioned<PortCall>> {
+    let call = find_call(app, operator, vessel, id).await?;
+    let version = Version::of(&call.revision)?;
+    Ok(Versioned(call, version))
 }
 
 async fn find_call(

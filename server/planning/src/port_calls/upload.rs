@@ -16,7 +16,7 @@ use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{FileContent, Id, Json, Params, file, file_name};
+use binnacle_platform::http::{FileContent, FileName, Id, Json, Params, file};
 use binnacle_platform::ids::{CallId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_schedule::calls::{FileErrors, csv, ics};
@@ -311,6 +311,6 @@ async fn export_csv(
         .collect();
     let mut bytes = Vec::new();
     csv::write(&calls?, &mut bytes).map_err(anyhow::Error::from)?;
-    let name = file_name(&["port calls", &row.name], "csv");
+    let name = FileName::new(&["port calls", &row.name], "csv");
     Ok(file("text/csv; charset=utf-8", &name, bytes))
 }

@@ -19,7 +19,7 @@ use axum::response::Response;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{FileContent, Json, Params, file, file_name};
+use binnacle_platform::http::{FileContent, FileName, Json, Params, file};
 use chrono::{Datelike, NaiveDate};
 use csv::Table;
 use report::Report;
@@ -135,9 +135,9 @@ impl Range {
 }
 
 impl Report {
-    fn file_name(&self, content: &str, extension: &str) -> String {
+    fn file_name(&self, content: &str, extension: &'static str) -> FileName {
         let (from, to) = (self.from.to_string(), self.to.to_string());
-        file_name(
+        FileName::new(
             &["compass", content, &self.operator_name, &from, &to],
             extension,
         )

@@ -6,7 +6,7 @@ use crate::access::Auditor;
 use crate::app::App;
 use crate::audit::{self, Filter, Line, Selection};
 use crate::error::{Error, Problem, Result};
-use crate::http::{FileContent, Json, Page, Params, file, time};
+use crate::http::{FileContent, FileName, Json, Page, Params, file, time};
 use crate::time::Time;
 use axum::body::{Body, Bytes};
 use axum::extract::{FromRef, State};
@@ -86,7 +86,11 @@ async fn audit_csv(
     };
     let rest = stream::try_unfold(all, next_lines);
     let body = Body::from_stream(head.chain(rest));
-    Ok(file("text/csv; charset=utf-8", "audit.csv", body))
+    Ok(file(
+        "text/csv; charset=utf-8",
+        &FileName::new(&["audit"], "csv"),
+        body,
+    ))
 }
 
 fn read_selection(auditor: Auditor, filter: Filter) -> Result<Selection> {

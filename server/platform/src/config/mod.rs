@@ -97,6 +97,10 @@ pub struct Serve {
         value_parser = metrics_token
     )]
     pub metrics_token: Option<MetricsToken>,
+    /// Requests that a person, program or client address may make in a minute, in this process
+    #[arg(long, env = "BINNACLE_REQUESTS_PER_MINUTE", default_value_t = 6000,
+          value_parser = clap::value_parser!(u32).range(1..))]
+    pub requests_per_minute: u32,
     /// Retention of the audit log in days
     #[arg(long, env = "BINNACLE_AUDIT_DAYS", default_value_t = 1095,
           value_parser = clap::value_parser!(u32).range(1..=36_500))]

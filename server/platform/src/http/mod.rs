@@ -6,15 +6,19 @@ mod file;
 pub mod headers;
 mod json;
 mod page;
+pub mod rate;
 mod rejections;
+pub mod spreadsheet;
+mod version;
 
 pub use amended::{Amended, never_null};
-pub use file::{FileContent, file, file_name};
+pub use file::{FileContent, FileName, file};
 pub use json::{
     Id, Json, Params, Valid, ValidOrNone, degrees, is_control, optional_text, text, time,
     unknown_name,
 };
 pub use page::{Listed, Page};
+pub use version::{IfMatch, Version, Versioned};
 
 /// Largest JSON body, bytes.
 pub const MAX_JSON_BYTES: usize = 64 * 1024;

@@ -9,13 +9,14 @@ mod webhooks;
 
 use axum::http::StatusCode;
 use binnacle_compass::openapi::{allow_unknown_properties, flatten, schema_mut};
+use binnacle_platform::http::spreadsheet::CsvForm;
 use serde_json::Value;
 use std::mem;
-use utoipa::ToSchema;
 use utoipa::openapi::path::{Operation, ParameterIn};
 use utoipa::openapi::schema::{Object, Schema};
 use utoipa::openapi::security::SecurityRequirement;
 use utoipa::openapi::{OpenApi, RefOr, Response};
+use utoipa::{IntoParams, ToSchema};
 
 /// Adds the fields that one domain's problems carry to the schema `Problem`.
 ///
@@ -119,6 +120,7 @@ pub(super) fn complete(document: &mut OpenApi) {
             add_disk_full(operation);
             require_request_header(operation);
         }
+        path.get.iter_mut().for_each(add_csv_form);
         path.get.iter_mut().for_each(add_problems);
         let all = [
             &mut path.get,
@@ -134,6 +136,18 @@ pub(super) fn complete(document: &mut OpenApi) {
                 }
             }
         }
+    }
+}
+
+/// Adds the parameters by which a spreadsheet's form of a CSV file is asked for.
+fn add_csv_form(operation: &mut Operation) {
+    let is_csv = operation.responses.responses.values().any(|response| {
+        matches!(response, RefOr::T(response) if response.content.contains_key("text/csv"))
+    });
+    if is_csv {
+        let form = CsvForm::into_params(|| Some(ParameterIn::Query));
+        let parameters = operation.parameters.get_or_insert_default();
+        parameters.extend(form.into_iter().map(RefOr::T));
     }
 }
 
@@ -185,6 +199,10 @@ fn add_problems(operation: &mut Operation) {
     for (status, may_be) in [
         ("400", query || body),
         ("403", fleet),
+        (
+            "412",
+            parameters().any(|found| found.name.eq_ignore_ascii_case("If-Match")),
+        ),
         ("413", body),
         ("415", json),
         ("422", json),

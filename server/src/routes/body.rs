@@ -1,0 +1,220 @@
+//! Bodies of refused requests: all their mistakes at once, each with a JSON pointer (RFC 6901).
+//!
+//! Invariants: a request is read, and refused, by its handler alone. Only then is its body
+//! compared with the schema of the OpenAPI document, for what else is wrong with it.
+
+use super::docs::DOCUMENT;
+use axum::body::{Body, Bytes};
+use axum::extract::{MatchedPath, Request};
+use axum::http::header::{CONTENT_LENGTH, CONTENT_TYPE};
+use axum::http::{Method, StatusCode};
+use axum::middleware::Next;
+use axum::response::Response;
+use binnacle_platform::http::MAX_JSON_BYTES;
+use futures_util::StreamExt;
+use serde_json::{Value, json};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Most mistakes that a response lists.
+const MOST_MISTAKES: usize = 50;
+
+/// Completes the problem of a refused JSON body by all its mistakes.
+pub(super) async fn list_mistakes(request: Request, next: Next) -> Response {
+    let Some(schema) = body_schema(&request) else {
+        return next.run(request).await;
+    };
+    let read = Arc::new(Mutex::new(Vec::new()));
+    let response = next.run(copied(request, &read)).await;
+    if response.status() != StatusCode::UNPROCESSABLE_ENTITY {
+        return response;
+    }
+    let bytes = std::mem::take(&mut *read.lock().unwrap_or_else(PoisonError::into_inner));
+    let Ok(body) = serde_json::from_slice::<Value>(&bytes) else {
+        return response;
+    };
+    with_mistakes(response, &mistakes(schema, &body)).await
+}
+
+/// Returns the schema of an operation's JSON body.
+fn body_schema(request: &Request) -> Option<&'static Value> {
+    if matches!(*request.method(), Method::GET | Method::HEAD) {
+        return None;
+    }
+    let route = request.extensions().get::<MatchedPath>()?;
+    let method = request.method().as_str().to_lowercase();
+    let operation = DOCUMENT["paths"].get(route.as_str())?.get(method)?;
+    operation["requestBody"]["content"]["application/json"].get("schema")
+}
+
+/// Returns the request with a body that is copied while its handler reads it.
+fn copied(request: Request, read: &Arc<Mutex<Vec<u8>>>) -> Request {
+    let read = Arc::clone(read);
+    request.map(|body| {
+        Body::from_stream(body.into_data_stream().inspect(move |chunk| {
+            let mut read = read.lock().unwrap_or_else(PoisonError::into_inner);
+            if let Ok(bytes) = chunk
+                && read.len() + bytes.len() <= MAX_JSON_BYTES
+            {
+                read.extend_from_slice(bytes);
+            }
+        }))
+    })
+}
+
+/// Adds mistakes to the problem in a response.
+async fn with_mistakes(response: Response, found: &[Value]) -> Response {
+    let (mut parts, body) = response.into_parts();
+    let is_problem = parts.headers.get(CONTENT_TYPE);
+    let is_problem = is_problem.is_some_and(|kind| kind == "application/problem+json");
+    let Ok(bytes) = axum::body::to_bytes(body, MAX_JSON_BYTES).await else {
+        return Response::from_parts(parts, Body::empty());
+    };
+    let problem = serde_json::from_slice::<Value>(&bytes).ok();
+    let Some(mut problem) = problem.filter(|_| is_problem) else {
+        return Response::from_parts(parts, Body::from(bytes));
+    };
+    let mut errors = problem["errors"].as_array().cloned().unwrap_or_default();
+    for mistake in found {
+        let known = |error: &Value| error["pointer"] == mistake["pointer"];
+        if !errors.iter().any(known) {
+            errors.push(mistake.clone());
+        }
+    }
+    // A mistake of the whole body says no more than its parts.
+    if errors.len() > 1 {
+        errors.retain(|error| error["pointer"] != "");
+    }
+    problem["errors"] = Value::Array(errors);
+    parts.headers.remove(CONTENT_LENGTH);
+    Response::from_parts(parts, Body::from(Bytes::from(problem.to_string())))
+}
+
+/// Lists what in a body is not as its schema says.
+fn mistakes(schema: &'static Value, body: &Value) -> Vec<Value> {
+    let mut found = Vec::new();
+    check(schema, body, "", &mut found);
+    found.truncate(MOST_MISTAKES);
+    found
+}
+
+fn check(schema: &'static Value, value: &Value, pointer: &str, found: &mut Vec<Value>) {
+    if let Some(name) = schema["$ref"].as_str() {
+        if let Some(referenced) = DOCUMENT.pointer(name.trim_start_matches('#')) {
+            check(referenced, value, pointer, found);
+        }
+        return;
+    }
+    let mut add = |detail: String| found.push(json!({ "pointer": pointer, "detail": detail }));
+    if let Some(forms) = schema["oneOf"].as_array().or(schema["anyOf"].as_array()) {
+        return check_forms(forms, value, pointer, found);
+    }
+    if let Some(allowed) = schema["enum"].as_array()
+        && !allowed.contains(value)
+    {
+        let allowed: Vec<String> = allowed.iter().map(Value::to_string).collect();
+        return add(format!("{value} is none of {}", allowed.join(", ")));
+    }
+    if !has_type(&schema["type"], value) {
+        let wanted = schema["type"].to_string().replace(['"', '[', ']'], "");
+        return add(format!(
+            "{value} is not of type {}",
+            wanted.replace(',', " or ")
+        ));
+    }
+    if let Some(number) = value.as_f64() {
+        if let Some(least) = schema["minimum"].as_f64().filter(|least| number < *least) {
+            add(format!("{value} is less than {least}"));
+        }
+        if let Some(most) = schema["maximum"].as_f64().filter(|most| number > *most) {
+            add(format!("{value} is more than {most}"));
+        }
+    }
+    if let Some(text) = value.as_str() {
+        let length = text.chars().count() as u64;
+        if let Some(most) = schema["maxLength"].as_u64().filter(|most| length > *most) {
+            add(format!("is longer than {most} characters"));
+        }
+        if schema["minLength"]
+            .as_u64()
+            .is_some_and(|least| length < least)
+        {
+            add("is too short".to_owned());
+        }
+    }
+    for part in schema["allOf"].as_array().into_iter().flatten() {
+        check(part, value, pointer, found);
+    }
+    check_parts(schema, value, pointer, found);
+}
+
+/// Checks the members of an object or list.
+fn check_parts(schema: &'static Value, value: &Value, pointer: &str, found: &mut Vec<Value>) {
+    if let Some(object) = value.as_object() {
+        let required = schema["required"].as_array().into_iter().flatten();
+        for name in required.filter_map(Value::as_str) {
+            if !object.contains_key(name) {
+                let pointer = format!("{pointer}/{}", escaped(name));
+                found.push(json!({ "pointer": pointer, "detail": "is missing" }));
+            }
+        }
+        for (name, part) in object {
+            if let Some(property) = schema["properties"].get(name) {
+                check(
+                    property,
+                    part,
+                    &format!("{pointer}/{}", escaped(name)),
+                    found,
+                );
+            }
+        }
+    }
+    if let (Some(items), Some(schema)) = (value.as_array(), schema.get("items")) {
+        for (at, item) in items.iter().enumerate() {
+            check(schema, item, &format!("{pointer}/{at}"), found);
+        }
+    }
+}
+
+/// Checks a value that may have one of several forms: by the form that fits it best.
+fn check_forms(forms: &'static [Value], value: &Value, pointer: &str, found: &mut Vec<Value>) {
+    let mut least: Option<Vec<Value>> = None;
+    for form in forms {
+        let mut here = Vec::new();
+        check(form, value, pointer, &mut here);
+        if least.as_ref().is_none_or(|least| here.len() < least.len()) {
+            least = Some(here);
+        }
+    }
+    // `null` is a form of what may be left out, and no help to who sent something else.
+    let given = forms.iter().find(|form| form["type"] != "null");
+    match (least, given) {
+        (Some(least), Some(form)) if !least.is_empty() && forms.len() == 2 => {
+            check(form, value, pointer, found);
+        }
+        (Some(least), _) => found.extend(least),
+        (None, _) => {}
+    }
+}
+
+fn has_type(wanted: &Value, value: &Value) -> bool {
+    let is = |name: &Value| match name.as_str() {
+        Some("string") => value.is_string(),
+        Some("integer") => value.is_i64() || value.is_u64(),
+        Some("number") => value.is_number(),
+        Some("boolean") => value.is_boolean(),
+        Some("object") => value.is_object(),
+        Some("array") => value.is_array(),
+        Some("null") => value.is_null(),
+        _ => true,
+    };
+    match wanted {
+        Value::Array(names) => names.iter().any(is),
+        Value::Null => true,
+        name => is(name),
+    }
+}
+
+/// Escapes a member's name for a JSON pointer (RFC 6901, section 3).
+fn escaped(name: &str) -> String {
+    name.replace('~', "~0").replace('/', "~1")
+}
