@@ -10,7 +10,7 @@ use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone, text};
+use binnacle_platform::http::{Id, Json, Page, Params, Period, Valid, ValidOrNone, text};
 use binnacle_platform::ids::AlertId;
 use binnacle_platform::session;
 use utoipa_axum::router::OpenApiRouter;
@@ -30,16 +30,25 @@ where
 }
 
 /// List the fleet's alerts
-#[utoipa::path(get, path = "/alerts", tag = "alerts", params(Filter, Page),
-    responses((status = 200, body = AlertList), (status = 401, body = Problem)))]
+///
+/// `from` and `to` are about the time since when the alert holds.
+#[utoipa::path(get, path = "/alerts", tag = "alerts", params(Filter, Period, Page),
+    responses((status = 200, body = AlertList), (status = 401, body = Problem),
+              (status = 422, body = Problem)))]
 async fn list_alerts(
     Shared(app): Shared<App>,
     reader: Reader,
     Params(filter): Params<Filter>,
+    Params(period): Params<Period>,
     page: Page,
 ) -> Result<Json<AlertList>> {
-    let before = page.after_id()?;
-    let found = store::list(&app.db, reader.operator, &filter, before, page.fetch()).await?;
+    let asked = store::ListedAlerts {
+        filter,
+        since: period.micros()?,
+        before: page.after_id()?,
+        limit: page.fetch(),
+    };
+    let found = store::list(&app.db, reader.operator, &asked).await?;
     let listed = page.cut(found, |alert| alert.id.to_string());
     Ok(Json(AlertList {
         items: listed.items,

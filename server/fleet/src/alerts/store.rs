@@ -21,14 +21,25 @@ pub(super) struct Remark {
     pub(super) at: Time,
 }
 
+/// Part of the alerts to list.
+pub(super) struct ListedAlerts {
+    /// Vessel, state and severity.
+    pub(super) filter: Filter,
+    /// First instant of their beginning, and the first after it, microseconds since 1970.
+    pub(super) since: (i64, i64),
+    /// Id before which the list begins.
+    pub(super) before: Option<Uuid>,
+    /// Maximum number of alerts.
+    pub(super) limit: i64,
+}
+
 /// Lists an operator's alerts from before an id, the newest first.
 pub(super) async fn list(
     db: &Db,
     operator: OperatorId,
-    filter: &Filter,
-    before: Option<Uuid>,
-    limit: i64,
+    asked: &ListedAlerts,
 ) -> DbResult<Vec<Alert>> {
+    let filter = &asked.filter;
     let severities = filter.severity.unwrap_or(Severity::Notice).and_worse();
     rows!(
         db,
@@ -42,17 +53,20 @@ pub(super) async fn list(
            AND ($4 IS NULL OR a.state = $4)
            AND ($5 IS NULL OR (a.state <> 'cleared') = $5)
            AND a.severity IN ($6, $7, $8)
+           AND a.since >= $9 AND a.since < $10
          ORDER BY a.id DESC
-         LIMIT $9",
+         LIMIT $11",
         operator,
-        before.unwrap_or(Uuid::max()),
+        asked.before.unwrap_or(Uuid::max()),
         filter.vessel,
         filter.state,
         filter.open,
         severities[0],
         severities[1],
         severities[2],
-        limit
+        asked.since.0,
+        asked.since.1,
+        asked.limit
     )
 }
 

@@ -22,7 +22,7 @@ use binnacle_platform::access::PartyReader;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Problem, Result};
-use binnacle_platform::http::{Id, Json, Page, Params};
+use binnacle_platform::http::{Id, Json, Page, Params, Period};
 use binnacle_platform::ids::OrderId;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -79,16 +79,26 @@ async fn log_order(
 }
 
 /// List work orders
-#[utoipa::path(get, path = "/work-orders", tag = "adjusting", params(Filter, Page),
-    responses((status = 200, body = OrderList), (status = 401, body = Problem)))]
+///
+/// `from` and `to` are about the time of the job.
+#[utoipa::path(get, path = "/work-orders", tag = "adjusting",
+    params(Filter, Period, Page),
+    responses((status = 200, body = OrderList), (status = 401, body = Problem),
+              (status = 422, body = Problem)))]
 async fn list_work_orders(
     Shared(app): Shared<App>,
     reader: PartyReader,
     Params(filter): Params<Filter>,
+    Params(period): Params<Period>,
     page: Page,
 ) -> Result<Json<OrderList>> {
-    let before = page.after_id()?;
-    let found = store::list(&app.db, reader.tenant, &filter, before, page.fetch()).await?;
+    let asked = store::ListedOrders {
+        filter,
+        planned: period.micros()?,
+        before: page.after_id()?,
+        limit: page.fetch(),
+    };
+    let found = store::list(&app.db, reader.tenant, &asked).await?;
     let listed = page.cut(found, |order| order.id.to_string());
     Ok(Json(OrderList {
         items: listed.items,

@@ -17,7 +17,7 @@ pub use json::{
     Id, Json, Params, Valid, ValidOrNone, degrees, is_control, optional_text, text, time,
     unknown_name,
 };
-pub use page::{Listed, Page};
+pub use page::{Listed, Page, Period};
 pub use version::{IfMatch, Version, Versioned};
 
 /// Largest JSON body, bytes.

@@ -1,5 +1,6 @@
 //! Pages of lists: `?limit=&after=`, where `after` is the `next` of the previous page.
 
+use super::json::time;
 use crate::error::{Error, Result};
 use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
@@ -16,6 +17,33 @@ pub struct Page {
     limit: Option<u32>,
     /// `next` of the previous page.
     after: Option<String>,
+}
+
+/// Period of a list.
+#[derive(Clone, Debug, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Period {
+    /// Only from this instant on, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime)]
+    from: Option<String>,
+    /// Only before this instant, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime)]
+    to: Option<String>,
+}
+
+impl Period {
+    /// Returns the first instant of the period, and the first after it, microseconds since 1970.
+    ///
+    /// # Errors
+    /// Fails when one of them is not RFC 3339.
+    pub fn micros(&self) -> Result<(i64, i64)> {
+        let from = time("from", self.from.as_deref())?;
+        let to = time("to", self.to.as_deref())?;
+        Ok((
+            from.map_or(i64::MIN, |from| from.micros()),
+            to.map_or(i64::MAX, |to| to.micros()),
+        ))
+    }
 }
 
 /// Page of a list.

@@ -41,14 +41,21 @@ macro_rules! summary_sql {
     };
 }
 
-/// Lists orders before an id, the newest first.
-pub(crate) async fn list(
-    db: &Db,
-    tenant: Tenant,
-    filter: &Filter,
-    before: Option<Uuid>,
-    limit: i64,
-) -> Result<Vec<Summary>> {
+/// Part of the orders to list.
+pub(crate) struct ListedOrders {
+    /// Vessel and state.
+    pub(crate) filter: Filter,
+    /// First instant of the jobs, and the first after it, microseconds since 1970.
+    pub(crate) planned: (i64, i64),
+    /// Id before which the list begins.
+    pub(crate) before: Option<Uuid>,
+    /// Maximum number of orders.
+    pub(crate) limit: i64,
+}
+
+/// Lists orders, the newest first.
+pub(crate) async fn list(db: &Db, tenant: Tenant, asked: &ListedOrders) -> Result<Vec<Summary>> {
+    let filter = &asked.filter;
     Ok(rows!(
         db,
         Summary,
@@ -59,15 +66,18 @@ pub(crate) async fn list(
                AND ($5 IS NULL OR $5 = CASE f.state WHEN 'open' THEN 'offered'
                                                     WHEN 'proposed' THEN 'proposed'
                                                     ELSE o.state END)
+               AND o.planned_at >= $6 AND o.planned_at < $7
              ORDER BY o.id DESC
-             LIMIT $6"
+             LIMIT $8"
         ),
         tenant.firm(),
         tenant.operator(),
-        before.unwrap_or(Uuid::max()),
+        asked.before.unwrap_or(Uuid::max()),
         filter.vessel,
         filter.state,
-        limit
+        asked.planned.0,
+        asked.planned.1,
+        asked.limit
     )?)
 }
 
