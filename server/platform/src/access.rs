@@ -126,6 +126,13 @@ impl Caller {
         self.user.tenant()
     }
 
+    /// Returns the owner of the caller's idempotency keys.
+    pub fn key_owner(&self) -> Tenant {
+        // No tenant has a user's id, and idempotency keys are separated by it alone.
+        let own = Tenant::Operator(OperatorId(self.user.user_id.0));
+        self.tenant().unwrap_or(own)
+    }
+
     /// Refuses a caller without the second factor that the operator requires.
     ///
     /// # Errors

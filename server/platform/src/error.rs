@@ -62,6 +62,9 @@ pub enum Error {
     /// Idempotency key that was used for another request.
     #[error("this idempotency key was used for another request")]
     KeyReused,
+    /// Repeated request for something whose secret was shown in the first response.
+    #[error("this request was done before; what it made is listed, but its secret is shown once")]
+    ShownOnce,
     /// Content that was changed since the caller read it.
     #[error("it was changed since you read it; read it again and repeat your change")]
     Changed,
@@ -243,6 +246,7 @@ impl Error {
                 "idempotency-key-reused",
                 "Idempotency key used before",
             ),
+            Error::ShownOnce => (StatusCode::CONFLICT, "shown-once", "Made before"),
             Error::Changed => (
                 StatusCode::PRECONDITION_FAILED,
                 "changed",

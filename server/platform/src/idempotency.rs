@@ -2,6 +2,8 @@
 //!
 //! Invariants: the key and the created resource are stored in one transaction, so that either
 //! both exist or neither. A key belongs to one operator or firm and is deleted after a day.
+//! What is shown only once is not shown again: a repeated request for it is
+//! refused.
 //! A capability may keep the keys of its own resources with them instead.
 
 use crate::db::{Tx, execute, row};
@@ -78,6 +80,29 @@ impl Key {
             return Err(Error::KeyReused);
         }
         Ok(id)
+    }
+}
+
+impl Key {
+    /// Records that the request makes something whose secret the response shows.
+    ///
+    /// # Errors
+    /// [`Error::ShownOnce`] when the same request was done before; fails also when the key was
+    /// used for another request.
+    pub async fn shown_once(
+        &self,
+        tx: &mut Tx,
+        tenant: impl Into<Tenant>,
+        request_hash: &[u8],
+        now: Time,
+    ) -> Result<()> {
+        let wanted = Uuid::now_v7();
+        let made = self.once(tx, tenant, request_hash, wanted, now).await?;
+        if made == wanted {
+            Ok(())
+        } else {
+            Err(Error::ShownOnce)
+        }
     }
 }
 

@@ -19,6 +19,7 @@ use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Valid, text};
+use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{AgentId, CompassId, VesselId};
 use binnacle_platform::secret;
 use binnacle_platform::time::Time;
@@ -67,7 +68,7 @@ pub struct AgentStreamList {
 }
 
 /// An enrolment code to be made.
-#[derive(Default, Deserialize, ToSchema)]
+#[derive(Default, Serialize, Deserialize, ToSchema)]
 #[serde(default)]
 pub struct NewCode {
     /// The compass that the agent will report; the vessel's first one by default.
@@ -115,18 +116,21 @@ async fn list_agents(
 
 /// Make an enrolment code
 #[utoipa::path(post, path = "/vessels/{id}/agents", tag = "fleet",
-    params(("id" = VesselId, Path)), request_body = NewCode,
+    params(("id" = VesselId, Path), Key), request_body = NewCode,
     responses((status = 201, body = EnrolmentCode), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "Made before", body = Problem),
               (status = 422, body = Problem)))]
 async fn create_code(
     State(app): State<App>,
     request: RequestContext,
     writer: Writer,
     Id(id): Id<VesselId>,
+    key: Key,
     Valid(new): Valid<NewCode>,
 ) -> Result<(StatusCode, Json<EnrolmentCode>)> {
     vessels::must_be_in_fleet(&app.db, writer.operator, id).await?;
+    let request_hash = idempotency::request_hash(&format!("code of {id}"), &new)?;
     let compass = compasses::find(&app.db, id, new.compass_id).await?;
     let valid_for_s = new.valid_for_s.unwrap_or(DEFAULT_VALID_FOR_S);
     if !(1..=LONGEST_VALID_FOR_S).contains(&valid_for_s) {
@@ -138,7 +142,11 @@ async fn create_code(
     let now = app.clock.now();
     let expires_at = Time(now.plus_seconds(f64::from(valid_for_s)));
     let code = secret::new_code();
-    store::insert_code(&request, &code, &compass, now.into(), expires_at).await?;
+    let mut tx = request.begin().await?;
+    key.shown_once(&mut tx, writer.operator, &request_hash, now.into())
+        .await?;
+    store::insert_code(&mut tx, &code, &compass, now.into(), expires_at).await?;
+    tx.commit().await?;
     Ok((
         StatusCode::CREATED,
         Json(EnrolmentCode { code, expires_at }),

@@ -15,15 +15,14 @@ use binnacle_wire::batch::StreamId;
 use uuid::Uuid;
 
 pub(super) async fn insert_code(
-    request: &RequestContext,
+    tx: &mut Tx,
     code: &str,
     compass: &Compass,
     now: Time,
     expires_at: Time,
 ) -> Result<()> {
-    let mut tx = request.begin().await?;
     execute!(
-        &mut tx,
+        tx,
         "INSERT INTO enrolment_codes (code_hash, vessel_id, compass_id, created_at, expires_at)
          VALUES ($1, $2, $3, $4, $5)",
         secret::hash(&secret::normal_code(code)),
@@ -32,7 +31,7 @@ pub(super) async fn insert_code(
         now,
         expires_at
     )?;
-    tx.commit().await
+    Ok(())
 }
 
 /// Result of an enrolment.

@@ -22,6 +22,7 @@ use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{FileContent, Id, Json, Listed, Page, Params, Valid, text};
+use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{FeedId, VesselId};
 use binnacle_platform::secret;
 use binnacle_platform::session;
@@ -100,17 +101,20 @@ async fn list_feeds(
 /// The feed has all your work orders, or those of one vessel; an operator's also has port calls and
 /// due dates. The response shows its secret address, once. The feed ends when your account is
 /// removed, disabled or given a new one-time code.
-#[utoipa::path(post, path = "/calendar-feeds", tag = "adjusting", request_body = NewFeed,
+#[utoipa::path(post, path = "/calendar-feeds", tag = "adjusting", params(Key), request_body = NewFeed,
     responses((status = 201, body = MadeFeed), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 404, description = "Vessel not found in your fleet", body = Problem),
+              (status = 409, description = "Made before", body = Problem),
               (status = 422, body = Problem)))]
 async fn create_feed(
     State(app): State<App>,
     request: RequestContext,
     writer: PartyWriter,
+    key: Key,
     Valid(new): Valid<NewFeed>,
 ) -> Result<(StatusCode, Json<MadeFeed>)> {
+    let request_hash = idempotency::request_hash("calendar feed", &new)?;
     let name = text("name", &new.name)?;
     if let Some(vessel) = new.vessel_id {
         let Tenant::Operator(operator) = writer.tenant else {
@@ -127,6 +131,8 @@ async fn create_feed(
         created_at: app.clock.now().into(),
         created_by: session::name_of(&mut tx, writer.user).await?,
     };
+    key.shown_once(&mut tx, writer.tenant, &request_hash, about.created_at)
+        .await?;
     let hash = secret::hash(&token);
     store::insert(&mut tx, writer.tenant, writer.user, &about, &hash).await?;
     tx.commit().await?;

@@ -5,6 +5,7 @@ use crate::app::App;
 use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Listed, Page, Valid};
+use crate::idempotency::{self, Key};
 use crate::ids::TokenId;
 use crate::secret;
 use crate::time::Time;
@@ -27,7 +28,8 @@ where
 }
 
 /// Token to be created.
-#[derive(Deserialize, ToSchema)]
+#[derive(Serialize, Deserialize, ToSchema)]
+#[schema(example = json!({ "name": "Office system", "scope": "write" }))]
 struct NewToken {
     /// Purpose of the token.
     #[schema(min_length = 1, max_length = 200)]
@@ -72,18 +74,22 @@ async fn list_tokens(
 }
 
 /// Create an API token
-#[utoipa::path(post, path = "/tokens", tag = "session", request_body = NewToken,
+#[utoipa::path(post, path = "/tokens", tag = "session", params(Key), request_body = NewToken,
     responses((status = 201, body = MadeToken), (status = 401, body = Problem),
-              (status = 403, body = Problem), (status = 422, body = Problem)))]
+              (status = 403, body = Problem), (status = 409, description = "Made before", body = Problem),
+              (status = 422, body = Problem)))]
 async fn create_token(
     State(app): State<App>,
     request: RequestContext,
     caller: Caller,
+    key: Key,
     Valid(new): Valid<NewToken>,
 ) -> Result<(StatusCode, Json<MadeToken>)> {
     // A leaked token must not create others that outlive it.
     caller.must_be_signed_in()?;
     caller.must_have_second_factor()?;
+    let user = caller.user.user_id;
+    let request_hash = idempotency::request_hash(&format!("token of {user}"), &new)?;
     let name = crate::http::text("name", &new.name)?;
     let now = app.clock.now();
     let expires_at = new
@@ -104,7 +110,11 @@ async fn create_token(
         created_at: now.into(),
         last_used_at: None,
     };
-    tokens::insert(&request, caller.user.user_id, &about, &secret::hash(&token)).await?;
+    let mut tx = request.begin().await?;
+    key.shown_once(&mut tx, caller.key_owner(), &request_hash, now.into())
+        .await?;
+    tokens::insert(&mut tx, user, &about, &secret::hash(&token)).await?;
+    tx.commit().await?;
     Ok((StatusCode::CREATED, Json(MadeToken { about, token })))
 }
 

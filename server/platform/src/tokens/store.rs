@@ -99,15 +99,9 @@ pub(crate) async fn list(
     )
 }
 
-pub(crate) async fn insert(
-    request: &RequestContext,
-    user: UserId,
-    token: &Token,
-    hash: &[u8],
-) -> Result<()> {
-    let mut tx = request.begin().await?;
+pub(crate) async fn insert(tx: &mut Tx, user: UserId, token: &Token, hash: &[u8]) -> Result<()> {
     execute!(
-        &mut tx,
+        tx,
         "INSERT INTO api_tokens (id, user_id, token_hash, name, scope, created_at, expires_at)
          VALUES ($1, $2, $3, $4, $5, $6, $7)",
         token.id,
@@ -118,7 +112,7 @@ pub(crate) async fn insert(
         token.created_at,
         token.expires_at
     )?;
-    tx.commit().await
+    Ok(())
 }
 
 pub(crate) async fn delete(request: &RequestContext, user: UserId, id: TokenId) -> Result<bool> {

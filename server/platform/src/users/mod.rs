@@ -14,6 +14,7 @@ use crate::app::App;
 use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Listed, Page, Valid, text};
+use crate::idempotency::{self, Key};
 use crate::ids::UserId;
 use crate::second_factor;
 use crate::session::{Role, normal_email};
@@ -94,7 +95,7 @@ struct UserList {
 }
 
 /// User to be invited.
-#[derive(Deserialize, ToSchema)]
+#[derive(Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({ "email": "ada@example.com", "name": "Ada Lovelace", "role": "viewer" }))]
 struct NewUser {
@@ -109,7 +110,7 @@ struct NewUser {
 }
 
 /// Role of an operator's user.
-#[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 enum FleetRole {
     /// Sees and changes the operator's fleet.
@@ -178,19 +179,23 @@ async fn list_users(
 ///
 /// Pass the link or the code on to the user, who sets a password with it. It works once, for a
 /// week.
-#[utoipa::path(post, path = "/users", tag = "people", request_body = NewUser,
+#[utoipa::path(post, path = "/users", tag = "people", params(Key), request_body = NewUser,
     responses((status = 201, body = InvitedUser), (status = 401, body = Problem),
               (status = 409, description = "The e-mail address already has an account", body = Problem)))]
 async fn invite_user(
     State(app): State<App>,
     request: RequestContext,
     admin: AdminWriter,
+    key: Key,
     Valid(new): Valid<NewUser>,
 ) -> Result<(StatusCode, Json<InvitedUser>)> {
+    let request_hash = idempotency::request_hash("user", &new)?;
     let email = checked_email(&new.email)?;
     let name = text("name", &new.name)?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
+    key.shown_once(&mut tx, admin.operator, &request_hash, now)
+        .await?;
     let created = store::insert(&mut tx, admin.operator, &email, &name, new.role.into(), now);
     let id = created.await?.ok_or_else(|| {
         Error::WrongState(format!(
