@@ -121,6 +121,8 @@ pub enum Source {
     Csv,
     /// A calendar.
     Icalendar,
+    /// A port system.
+    PortSystem,
 }
 
 /// Port call of a vessel.

@@ -16,6 +16,7 @@ mod moves;
 mod ports;
 mod store;
 mod subscriber;
+mod timestamps;
 mod upload;
 mod uploaded_file;
 
@@ -57,6 +58,7 @@ where
         .routes(routes!(find_port_call, amend_port_call))
         .routes(routes!(withdraw_port_call))
         .merge(upload::router())
+        .merge(timestamps::router())
         .merge(ports::router())
 }
 

@@ -15,6 +15,7 @@ use binnacle_orders::dispatch::{announce_call_updates, attach_new_calls};
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
+use binnacle_platform::db::Tx;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{FileContent, FileName, Id, Json, Params, file};
 use binnacle_platform::ids::{CallId, VesselId};
@@ -52,15 +53,15 @@ struct UploadOptions {
 #[schema(as = PortCallUpload, example = json!({
     "created": 3, "amended": 1, "unchanged": 8, "withdrawn": 0, "over": 2
 }))]
-struct Uploaded {
+pub(super) struct Uploaded {
     /// Number of new calls.
-    created: usize,
+    pub(super) created: usize,
     /// Number of calls that changed.
-    amended: usize,
+    pub(super) amended: usize,
     /// Number of calls that stayed the same.
     unchanged: usize,
     /// Number of calls withdrawn.
-    withdrawn: usize,
+    pub(super) withdrawn: usize,
     /// Number of past calls, which are skipped.
     over: usize,
 }
@@ -95,7 +96,11 @@ async fn upload_fleet_csv(
         errors,
         over: rows.over,
     };
-    store_file(&app, &request, writer, file, Source::Csv, &options).await
+    let tx = request.begin().await?;
+    let replaces = options.replace.unwrap_or(false);
+    Ok(Json(
+        store_file(&app, tx, writer, file, Source::Csv, replaces).await?,
+    ))
 }
 
 /// Upload a CSV file of a vessel's port calls
@@ -135,7 +140,11 @@ async fn upload_csv(
         errors,
         over: rows.over,
     };
-    store_file(&app, &request, writer, file, Source::Csv, &options).await
+    let tx = request.begin().await?;
+    let replaces = options.replace.unwrap_or(false);
+    Ok(Json(
+        store_file(&app, tx, writer, file, Source::Csv, replaces).await?,
+    ))
 }
 
 /// Returns the valid rows of a file and the errors of others. `vessel` is that of rows without one.
@@ -207,37 +216,39 @@ async fn upload_ics(
         errors,
         over: calendar.over,
     };
-    store_file(&app, &request, writer, file, Source::Icalendar, &options).await
+    let tx = request.begin().await?;
+    let replaces = options.replace.unwrap_or(false);
+    Ok(Json(
+        store_file(&app, tx, writer, file, Source::Icalendar, replaces).await?,
+    ))
 }
 
 /// Parsed file of port calls.
-struct ParsedFile {
+pub(super) struct ParsedFile {
     /// Calls by vessel.
-    vessels: BTreeMap<VesselId, VesselCalls>,
+    pub(super) vessels: BTreeMap<VesselId, VesselCalls>,
     /// Errors of the file.
-    errors: FileErrors,
+    pub(super) errors: FileErrors,
     /// Number of past calls, which are skipped.
-    over: usize,
+    pub(super) over: usize,
 }
 
 /// Stores a file whole, or nothing of it if it has an error.
-async fn store_file(
+pub(super) async fn store_file(
     app: &App,
-    request: &RequestContext,
+    mut tx: Tx,
     writer: Writer,
     file: ParsedFile,
     source: Source,
-    options: &UploadOptions,
-) -> Result<Json<Uploaded>> {
+    replaces: bool,
+) -> Result<Uploaded> {
     let now = app.clock.now().into();
-    let replaces = options.replace.unwrap_or(false);
     let mut errors = file.errors;
     let mut uploaded = Uploaded {
         over: file.over,
         ..Uploaded::default()
     };
     let (mut changed, mut pending) = (Vec::new(), Vec::new());
-    let mut tx = request.begin().await?;
     let author = Author::from_user(&mut tx, writer.user, now).await?;
     // In order of ids, so that concurrent files cannot deadlock.
     for (vessel, calls) in file.vessels {
@@ -284,7 +295,7 @@ async fn store_file(
     }
     errors.into_result(()).map_err(refuse_file)?;
     commit(app, tx, &changed, pending, now).await?;
-    Ok(Json(uploaded))
+    Ok(uploaded)
 }
 
 /// Export a vessel's port calls as CSV

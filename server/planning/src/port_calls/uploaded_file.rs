@@ -74,6 +74,11 @@ pub(super) struct VesselCalls {
 }
 
 impl VesselCalls {
+    /// Adds a call that stands on no line of a file.
+    pub(super) fn add(&mut self, content: Content) {
+        self.calls.push(CallOnLine { line: 1, content });
+    }
+
     /// Adds a call of the file.
     pub(super) fn push(
         &mut self,

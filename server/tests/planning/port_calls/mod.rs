@@ -1,6 +1,7 @@
 //! Single port calls: entered, amended, withdrawn; and the berth heading.
 
 mod files;
+mod timestamps;
 
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::patch;

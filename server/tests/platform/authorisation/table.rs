@@ -99,6 +99,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("PUT /operators/{id}/firms/{firm}", PLATFORM_WRITES),
     ("GET /port-calls", FLEET_READS),
     ("POST /port-calls.csv", FLEET_WRITES),
+    ("POST /port-calls/timestamps", FLEET_WRITES),
     ("GET /ports", PARTY_READS),
     ("GET /readyz", OPEN),
     ("GET /reports/fleet", FLEET_READS),
