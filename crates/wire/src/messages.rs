@@ -46,6 +46,7 @@ pub struct EnrolResponse {
 /// and keeps the old one until it has the response.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = NewAgentToken))]
 pub struct NewToken {
     /// Bearer token.
     pub token: String,

@@ -187,7 +187,7 @@ pub struct Mistake {
     /// JSON pointer (RFC 6901) to the value; empty for the whole body.
     #[schema(example = "/terms/fee_eur")]
     pub pointer: String,
-    /// What is wrong with it.
+    /// Explanation.
     pub detail: String,
 }
 

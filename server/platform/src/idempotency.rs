@@ -2,8 +2,7 @@
 //!
 //! Invariants: the key and the created resource are stored in one transaction, so that either
 //! both exist or neither. A key belongs to one operator or firm and is deleted after a day.
-//! What is shown only once is not shown again: a repeated request for it is
-//! refused.
+//! A secret is shown once: a repeated request for one is refused.
 //! A capability may keep the keys of its own resources with them instead.
 
 use crate::db::{Tx, execute, row};

@@ -31,6 +31,7 @@ pub mod idempotency;
 pub mod identity_provider;
 pub mod oidc;
 pub mod password;
+pub mod request_rates;
 pub mod second_factor;
 pub mod secret;
 pub mod session;

@@ -82,6 +82,13 @@ pub enum Create {
         #[command(flatten)]
         person: Person,
     },
+    /// A sandbox: an operator and a firm to practise with, a simulated ship, and an order that is
+    /// offered to the firm; prints passwords, API tokens and a reading to send
+    Sandbox {
+        /// Name of the operator
+        #[arg(long, default_value = "Sandbox")]
+        name: String,
+    },
     /// A user who manages operators and firms
     PlatformAdmin {
         /// New user.

@@ -21,7 +21,7 @@ mod table;
 mod validate;
 mod verify_evidence;
 
-pub use admin::admin;
+pub use admin::{Account, Sandbox, admin, create_sandbox};
 pub use analyse::analyse;
 pub use backup::{back_up, restore};
 pub use deviation::deviation;

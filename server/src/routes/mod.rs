@@ -4,6 +4,7 @@ mod body;
 mod docs;
 mod document;
 mod query;
+mod rate_limit;
 
 use crate::kinds::{event_kinds, message_kinds, notice_kinds};
 use crate::state::ServerState;
@@ -23,7 +24,7 @@ use binnacle_orders::work_orders::NotAdjustableFields;
 use binnacle_orders::{api as orders_api, firms};
 use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
 use binnacle_platform::db::Workload;
-use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers, rate, spreadsheet};
+use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers, spreadsheet};
 use binnacle_platform::{
     audit, audit_api, error, event_stream, events, mail, oidc, session, session_api, users,
     webhooks,
@@ -244,7 +245,7 @@ pub fn router(state: &ServerState) -> Router {
     let parts = Parts::new();
     let mut pages = parts.health;
     pages = if role.serves_people() {
-        let limit = axum::middleware::from_fn_with_state(state.app.clone(), rate::limit);
+        let limit = axum::middleware::from_fn_with_state(state.app.clone(), rate_limit::limit);
         pages.merge(parts.people.layer(limit))
     } else {
         pages.fallback(no_such_route)

@@ -9,6 +9,7 @@ mod headers;
 mod mail;
 mod people;
 mod requests;
+mod sandbox;
 mod second_factor;
 mod secrets;
 mod sessions;

@@ -1,6 +1,6 @@
-//! What holds for every request: its query, the mistakes in its body, its rate, its versions and
-//! the form of files.
+//! Rules for all requests: query, mistakes in the body, rate, versions, and the form of files.
 
+use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::port_calls::{call, path};
 use binnacle_server_testing::{ApiResponse, Engine, Person, TestServer, on_both};
 use reqwest::Method;
@@ -12,6 +12,8 @@ on_both!(
     a_change_of_what_another_person_changed_meanwhile_is_refused,
     a_csv_file_has_the_form_that_a_spreadsheet_expects,
     a_file_keeps_the_vessels_name,
+    a_repeated_request_for_a_secret_makes_nothing_more,
+    orders_and_alerts_are_listed_by_their_time,
 );
 
 async fn a_query_parameter_that_does_not_exist_is_refused_by_name(server: TestServer) {
@@ -172,11 +174,17 @@ async fn a_csv_file_has_the_form_that_a_spreadsheet_expects(server: TestServer) 
         plain.contains("\"Köln, 5\"") && plain.contains(",45.5"),
         "{plain}"
     );
-    let european = file("?separator=semicolon&decimal=comma&bom=true").await;
-    assert!(european.starts_with('\u{feff}'), "{european}");
+    let european = file("?separator=semicolon&decimal=comma").await;
     assert!(
         european.contains(";Köln, 5;") && european.contains(";45,5"),
         "{european}"
+    );
+    // A client that decodes text would take the mark away.
+    let marked = ada.request(Method::GET, &format!("{}.csv?bom=true", path(&vessel)));
+    let marked = marked.send().await.unwrap().bytes().await.unwrap();
+    assert_eq!(
+        marked.strip_prefix("\u{feff}".as_bytes()),
+        Some(plain.as_bytes())
     );
     assert!(file("?separator=tab").await.contains("\tKöln, 5\t"));
     let unknown = ada
@@ -195,6 +203,66 @@ async fn a_file_keeps_the_vessels_name(server: TestServer) {
         "inline; filename=\"port-calls-r.csv\"; \
          filename*=UTF-8''port%20calls%20%C3%86r%C3%B8%20%E8%88%B9.csv"
     );
+    server.finish().await;
+}
+
+async fn a_repeated_request_for_a_secret_makes_nothing_more(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let vessel = ada.create_vessel("Nao").await;
+    let agents = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
+    let person = json!({ "email": "eve@example.com", "name": "Eve", "role": "viewer" });
+    for (path, body) in [
+        ("/tokens", json!({ "name": "office", "scope": "read" })),
+        ("/calendar-feeds", json!({ "name": "Our fleet" })),
+        ("/users", person),
+        (agents.as_str(), json!({})),
+    ] {
+        let create = async |key: &str, body: &Value| {
+            let request = ada
+                .request(Method::POST, path)
+                .header("idempotency-key", key);
+            ApiResponse::send(request.json(body)).await
+        };
+        let key = format!("key of {path}");
+        assert_eq!(create(&key, &body).await.status, 201, "{path}");
+        let repeated = create(&key, &body).await;
+        assert_eq!(
+            (repeated.status, repeated.problem().as_str()),
+            (409, "shown-once"),
+            "{path}"
+        );
+    }
+    let tokens = ada.get("/tokens").await.good();
+    assert_eq!(tokens["items"].as_array().unwrap().len(), 1, "{tokens}");
+    let feeds = ada.get("/calendar-feeds").await.good();
+    assert_eq!(feeds["items"].as_array().unwrap().len(), 1, "{feeds}");
+    server.finish().await;
+}
+
+async fn orders_and_alerts_are_listed_by_their_time(server: TestServer) {
+    let parties = OfferParties::planned(&server, 0).await;
+    let count = async |query: &str| {
+        let listed = parties.ada.get(query).await.good();
+        listed["items"].as_array().unwrap().len()
+    };
+    // The job is on 22 November at 08:00.
+    for (query, orders) in [
+        ("from=2026-11-22T08:00:00Z", 1),
+        ("from=2026-11-22T08:00:01Z", 0),
+        ("to=2026-11-22T08:00:00Z", 0),
+        ("to=2026-11-22T09:00:00%2B01:00", 0),
+        ("to=2026-11-22T08:00:01Z", 1),
+    ] {
+        assert_eq!(
+            count(&format!("/work-orders?{query}")).await,
+            orders,
+            "{query}"
+        );
+    }
+    let day = parties.ada.get("/work-orders?from=22.11.2026").await;
+    assert_eq!(day.problem(), "invalid");
+    assert_eq!(day.json()["errors"][0]["pointer"], "/from");
+    assert_eq!(count("/alerts?from=2026-01-01T00:00:00Z").await, 0);
     server.finish().await;
 }
 

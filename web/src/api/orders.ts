@@ -204,8 +204,8 @@ export function sendWrite({ order, key, content }: Write): Promise<WorkOrder> {
       return answer(
         client.POST('/api/v1/work-orders/{id}/photos', {
           params: { ...params, query: content.caption === '' ? {} : { caption: content.caption } },
-          // The file goes as it is; the document calls its octets numbers.
-          body: content.file as unknown as number[],
+          // The file goes as it is; the document calls its bytes a string.
+          body: content.file as unknown as string,
           bodySerializer: () => content.file,
           headers: { 'Content-Type': 'application/octet-stream' },
           signal,

@@ -15,6 +15,10 @@ use utoipa::{IntoParams, ToSchema};
 /// An azimuth to be entered.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(from = "NewAzimuthForm")]
+#[schema(example = json!({
+    "time": "2026-11-20T10:00:00Z", "lat": 43.4, "lon": -3.1, "kind": "sun_azimuth",
+    "compass_heading_deg": 92.0, "compass_bearing_deg": 150.0, "observer": "LW"
+}))]
 pub(super) struct NewAzimuth {
     /// The observation and its observer.
     #[serde(flatten)]

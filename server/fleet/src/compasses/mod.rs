@@ -37,6 +37,7 @@ where
 
 /// A compass to be entered.
 #[derive(Deserialize, Serialize, ToSchema)]
+#[schema(example = json!({ "name": "Steering compass", "role": "steering" }))]
 pub struct NewCompass {
     /// Its name.
     #[schema(min_length = 1, max_length = 200)]

@@ -13,6 +13,7 @@ use utoipa::{IntoParams, ToSchema};
 /// An entry to be written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(from = "NewEntryForm")]
+#[schema(example = json!({ "kind": "lightning", "from": "2026-11-20T03:00:00Z" }))]
 pub(super) struct NewEntry {
     /// The event.
     #[serde(flatten)]

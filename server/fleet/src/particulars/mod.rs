@@ -83,7 +83,7 @@ async fn find_particulars(
 ) -> Result<Versioned<Particulars>> {
     vessels::must_be_in_fleet(&app.db, reader.operator, vessel).await?;
     let stored = row!(&app.db, (String,), FIND, vessel)?;
-    versioned(particulars_of(stored)?)
+    versioned(particulars_of(stored.map(|(text,)| text))?)
 }
 
 /// Set a vessel's particulars for the rules on adjusting
@@ -109,7 +109,8 @@ async fn set_particulars(
     let mut tx = request.begin().await?;
     vessels::lock(&mut tx, writer.operator, vessel).await?;
     let stored = row!(in &mut tx, (String,), FIND, vessel)?;
-    if_match.check(&Version::of(&particulars_of(stored)?)?)?;
+    let stored = particulars_of(stored.map(|(text,)| text))?;
+    if_match.check(&Version::of(&stored)?)?;
     let name = session::name_of(&mut tx, writer.user).await?;
     put(&mut tx, vessel, &particulars, &name, now).await?;
     tx.publish(&ParticularsChanged {
@@ -129,10 +130,10 @@ fn versioned(particulars: Particulars) -> Result<Versioned<Particulars>> {
 const FIND: &str =
     "SELECT particulars FROM vessel_particulars WHERE vessel_id = $1 ORDER BY vessel_id";
 
-fn particulars_of(stored: Option<(String,)>) -> Result<Particulars> {
+fn particulars_of(stored: Option<String>) -> Result<Particulars> {
     Ok(stored.map_or_else(
         || Ok(Particulars::default()),
-        |(text,)| serde_json::from_str(&text),
+        |text| serde_json::from_str(&text),
     )?)
 }
 

@@ -33,6 +33,7 @@ pub struct LastPosition {
 
 /// A vessel to be entered.
 #[derive(Deserialize, Serialize, ToSchema)]
+#[schema(example = json!({ "name": "Nao Victoria", "imo_number": "9074729", "flag": "ES" }))]
 pub struct NewVessel {
     /// Its name.
     #[schema(min_length = 1, max_length = 200)]

@@ -64,6 +64,11 @@ struct FirmKeyList {
 /// Key to register.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "name": "Office, 2026",
+    "public_key": "d75a980182b10ab7d54bfed3c964073a0ee172f3daa62325af021a68f707511a",
+    "proof": "0".repeat(128)
+}))]
 struct NewFirmKey {
     /// The firm's name for it.
     #[schema(min_length = 1, max_length = 200, example = "Office, 2026")]

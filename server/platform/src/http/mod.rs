@@ -6,7 +6,6 @@ mod file;
 pub mod headers;
 mod json;
 mod page;
-pub mod rate;
 mod rejections;
 pub mod spreadsheet;
 mod version;

@@ -36,7 +36,10 @@ fn add_schema<T: ToSchema>(document: &mut OpenApi) -> Cow<'static, str> {
     T::schemas(&mut referenced);
     referenced.push((T::name().into_owned(), T::schema()));
     let schemas = &mut document.components.get_or_insert_default().schemas;
-    schemas.extend(referenced);
+    for (name, schema) in referenced {
+        // Those that are there already were completed, as by the names of all kinds.
+        schemas.entry(name).or_insert(schema);
+    }
     T::name()
 }
 

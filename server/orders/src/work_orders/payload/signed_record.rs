@@ -37,7 +37,10 @@ pub(crate) struct Completion {
 /// Signature by a firm's key.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-#[schema(as = RecordSignature)]
+#[schema(as = RecordSignature, example = json!({
+    "public_key": "d75a980182b10ab7d54bfed3c964073a0ee172f3daa62325af021a68f707511a",
+    "signature": "0".repeat(128)
+}))]
 pub(crate) struct SubmittedSignature {
     /// The Ed25519 public key (RFC 8032), 64 hexadecimal digits.
     #[schema(min_length = 64, max_length = 64)]

@@ -1,12 +1,18 @@
 //! `admin`: creates operators, firms and users, resets users and revokes agents.
 
+mod sandbox;
+
+pub use sandbox::{Account, Sandbox, create_sandbox};
+
 use super::operate::block_on;
 use super::{BadInput, print_result};
-use crate::cli::{Admin, AdminCommand, Create, FleetRole, Person};
+use crate::cli::{Admin, AdminCommand, Cli, Command, Create, FleetRole, Person};
+use crate::health;
 use crate::subscriptions::subscribers;
 use anyhow::Result;
 use binnacle_fleet::{enrolment, operators};
 use binnacle_orders::firms;
+use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::clock::Clock;
 use binnacle_platform::db::{Db, Tx};
@@ -17,6 +23,7 @@ use binnacle_platform::session::{self, Role};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 use binnacle_platform::{http, password, users};
+use clap::Parser;
 use serde_json::json;
 use std::io::Read;
 use std::process::ExitCode;
@@ -33,7 +40,7 @@ pub fn admin(arguments: Admin) -> Result<ExitCode> {
         let now = Clock::System.now().into();
         let name = name_of(&arguments.command);
         let request = RequestContext::of_command(&db, name, now);
-        let made = run(&request, arguments.command, now).await;
+        let made = run(&db, &request, arguments.command, now).await;
         db.close().await;
         print_result(made?.map(|made| made.to_string()).map_err(BadInput))
     })
@@ -47,6 +54,7 @@ fn name_of(command: &AdminCommand) -> &'static str {
             Create::User { .. } => "admin create user",
             Create::Firm { .. } => "admin create firm",
             Create::Adjuster { .. } => "admin create adjuster",
+            Create::Sandbox { .. } => "admin create sandbox",
             Create::PlatformAdmin { .. } => "admin create platform-admin",
         },
         AdminCommand::ResetUser { .. } => "admin reset-user",
@@ -54,9 +62,9 @@ fn name_of(command: &AdminCommand) -> &'static str {
     }
 }
 
-async fn run(request: &RequestContext, command: AdminCommand, now: Time) -> Made {
+async fn run(db: &Db, request: &RequestContext, command: AdminCommand, now: Time) -> Made {
     match command {
-        AdminCommand::Create { what } => create(request, what, now).await,
+        AdminCommand::Create { what } => create(db, request, what, now).await,
         AdminCommand::ResetUser { email } => reset_user(request, &email, now).await,
         AdminCommand::RevokeAgent { vessel, agent } => {
             request.concerns_vessel(VesselId(vessel), None);
@@ -68,7 +76,7 @@ async fn run(request: &RequestContext, command: AdminCommand, now: Time) -> Made
 /// Created record, or the reason why the request is invalid.
 type Made = Result<Result<serde_json::Value, String>>;
 
-async fn create(request: &RequestContext, what: Create, now: Time) -> Made {
+async fn create(db: &Db, request: &RequestContext, what: Create, now: Time) -> Made {
     match what {
         Create::Operator { name } => create_operator(request, &name, now).await,
         Create::User {
@@ -88,6 +96,7 @@ async fn create(request: &RequestContext, what: Create, now: Time) -> Made {
             let firm = Tenant::Firm(FirmId(firm));
             create_user(request, Some(firm), &person, Role::Adjuster, now).await
         }
+        Create::Sandbox { name } => print_sandbox(db, &name).await,
         Create::PlatformAdmin { person } => {
             create_user(request, None, &person, Role::PlatformAdmin, now).await
         }
@@ -123,6 +132,24 @@ async fn create_operator(request: &RequestContext, name: &str, now: Time) -> Mad
     let id = operators::create(&mut tx, &name, now).await?;
     tx.commit().await?;
     Ok(Ok(json!({ "operator_id": id, "name": name })))
+}
+
+async fn print_sandbox(db: &Db, name: &str) -> Made {
+    let name = match http::text("--name", name) {
+        Ok(name) => name,
+        Err(error) => return Ok(Err(error.to_string())),
+    };
+    let Command::Serve(config) = Cli::parse_from(["binnacle-server", "serve"]).command else {
+        unreachable!("serve was asked for");
+    };
+    let app = App::new(
+        db.clone(),
+        Clock::System,
+        *config,
+        health::install_metrics()?,
+    );
+    let made = create_sandbox(&app, &name).await?;
+    Ok(Ok(serde_json::to_value(made)?))
 }
 
 async fn create_firm(request: &RequestContext, name: &str, operators: &[Uuid], now: Time) -> Made {
