@@ -42,7 +42,9 @@ fn lines(text: &str) -> Vec<String> {
             .count()
     };
     let events = begun("BEGIN:VEVENT");
-    assert_eq!(begun("DTSTAMP:"), events + begun("BEGIN:VALARM"));
+    for needed in ["UID:", "DTSTAMP:"] {
+        assert_eq!(begun(needed), events + begun("BEGIN:VALARM"), "{needed}");
+    }
     for needed in ["END:VEVENT", "UID:", "DTSTART:", "SEQUENCE:", "STATUS:"] {
         assert_eq!(begun(needed), events, "{needed}");
     }

@@ -194,7 +194,8 @@ fn render_order(order: &CalendarOrder, public_url: Option<&str>) -> anyhow::Resu
     if order.state == State::Accepted {
         let words = format!("Adjust {}, {}", order.compass_name, order.vessel_name);
         let mut alarm = Alarm::display(&words, Trigger::before_start(REMINDER));
-        // Without it the alarm would have the present time, and equal orders other bytes.
+        // Without these the alarm would have the present time and an id by chance.
+        alarm.uid(&format!("{}-reminder@binnacle", order.id));
         alarm.timestamp(to_utc(entry.at)?);
         event.alarm(alarm);
     }

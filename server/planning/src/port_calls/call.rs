@@ -121,8 +121,6 @@ pub enum Source {
     Csv,
     /// A calendar.
     Icalendar,
-    /// A port system.
-    PortSystem,
 }
 
 /// Port call of a vessel.

@@ -56,7 +56,7 @@ async fn a_call_follows_from_arrival_and_departure_and_their_changes(server: Tes
     let about = |field: &str| made[0][field].as_str().unwrap().to_owned();
     assert_eq!(about("reference"), "V42");
     assert_eq!(about("berth"), "Maasvlakte 3");
-    assert_eq!(about("source"), "port_system");
+    assert_eq!(about("source"), "api");
     assert_eq!(about("eta"), "2026-12-08T06:00:00Z");
     assert_eq!(about("etd"), "2026-12-10T18:00:00Z");
     // What a person has added stays.
