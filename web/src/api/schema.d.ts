@@ -8292,7 +8292,7 @@ export interface components {
          * @description Source of a port call.
          * @enum {string}
          */
-        PortCallSource: "api" | "csv" | "icalendar" | "port_system";
+        PortCallSource: "api" | "csv" | "icalendar";
         /**
          * @description Time of a vessel's visit to a port. Other members of the standard are ignored.
          * @example {
