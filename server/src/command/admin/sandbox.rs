@@ -35,7 +35,7 @@ const MAX_BYTES: usize = 1 << 20;
 /// Days that the ship has sailed.
 const DAYS: f64 = 20.0;
 /// Turning points of the voyage, degrees north and east: two magnetic latitudes, without which
-/// induced and permanent magnetism cannot be told apart. The ship ends off the berth.
+/// induced and permanent magnetism cannot be separated. The ship ends off the berth.
 const TURNS: [(f64, f64); 2] = [(43.4, -3.1), (10.0, -25.0)];
 /// Berth, degrees north and east, and heading there, degrees true.
 const BERTH: (f64, f64, f64) = (43.35, -3.04, 40.0);
