@@ -50,6 +50,14 @@ fn wrong(field: &'static str, detail: &str) -> Error {
     }
 }
 
+/// Encodes bytes as pairs of hexadecimal digits.
+pub fn to_hex(bytes: &[u8]) -> String {
+    let digits = bytes.iter().flat_map(|byte| [byte >> 4, byte & 15]);
+    digits
+        .filter_map(|digit| char::from_digit(u32::from(digit), 16))
+        .collect()
+}
+
 /// Decodes pairs of hexadecimal digits into bytes.
 pub fn from_hex(text: &str) -> Option<Vec<u8>> {
     let digits: Option<Vec<u32>> = text.chars().map(|c| c.to_digit(16)).collect();

@@ -20,6 +20,7 @@ pub mod error;
 pub mod ids;
 pub mod outage;
 pub mod severity;
+pub mod signing_keys;
 pub mod time;
 
 pub mod access;

@@ -32,6 +32,9 @@ pub enum AdminCommand {
         #[arg(long)]
         email: String,
     },
+    /// Retire the key by which the server counter-signs work orders, and make the next; the old one
+    /// stays published, so that older evidence can be checked
+    RotateSigningKey,
     /// Revoke an agent's token; the agent must be enrolled again
     RevokeAgent {
         /// Id of the vessel

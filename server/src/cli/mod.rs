@@ -80,6 +80,9 @@ pub struct Backup {
 pub struct VerifyEvidence {
     /// Archive to check
     pub file: PathBuf,
+    /// Keys that the server has published, as `GET /api/v1/signing-keys` answers
+    #[arg(long, value_name = "FILE")]
+    pub keys: Option<PathBuf>,
 }
 
 /// Model of the earth's field.

@@ -26,8 +26,8 @@ use binnacle_planning::{calendar, needs, notifications, port_calls, reports, sch
 use binnacle_platform::db::Workload;
 use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers, spreadsheet};
 use binnacle_platform::{
-    audit, audit_api, error, event_stream, events, mail, oidc, session, session_api, users,
-    webhooks,
+    audit, audit_api, error, event_stream, events, mail, oidc, session, session_api, signing_keys,
+    users, webhooks,
 };
 use binnacle_priors as priors;
 use serde_json::json;
@@ -107,6 +107,7 @@ fn for_agents() -> OpenApiRouter<ServerState> {
 fn for_people() -> OpenApiRouter<ServerState> {
     OpenApiRouter::new()
         .merge(session_api::router())
+        .merge(signing_keys::router())
         .merge(oidc::router())
         .merge(users::router())
         .merge(audit_api::router())

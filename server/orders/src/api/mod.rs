@@ -13,6 +13,7 @@ use crate::work_orders::log::entry::Entry;
 use crate::work_orders::log::entry_list::{EntryLine, EntryList};
 use crate::work_orders::log::firm_view;
 use crate::work_orders::order::Order;
+use crate::work_orders::store::StoredLine;
 use crate::work_orders::summary::{Filter, OrderList};
 use crate::work_orders::{load_order, store};
 use axum::extract::{FromRef, RawPathParams, Request, State as Shared};
@@ -136,12 +137,17 @@ async fn list_entries(
     let summary = store::find_summary(&app.db, reader.tenant, id).await?;
     let after = page.after_number()?;
     let found = store::list_lines(&app.db, summary.vessel_id, id, after, page.fetch()).await?;
-    let listed = page.cut(found, |(seq, _, _)| seq.to_string());
-    let read = |(seq, line, sha256): (i64, String, String)| {
-        let entry: Entry = serde_json::from_str(&line)?;
-        let line = firm_view::line(reader.tenant, &entry, line, &sha256)?;
-        let entry = serde_json::from_str(&line)?;
-        Ok(EntryLine { seq, sha256, entry })
+    let listed = page.cut(found, |line| line.seq.to_string());
+    let read = |stored: StoredLine| {
+        let seal = stored.seal();
+        let entry: Entry = serde_json::from_str(&stored.line)?;
+        let line = firm_view::line(reader.tenant, &entry, stored.line, &stored.sha256)?;
+        Ok(EntryLine {
+            seq: stored.seq,
+            sha256: stored.sha256,
+            seal,
+            entry: serde_json::from_str(&line)?,
+        })
     };
     let items: Result<Vec<EntryLine>> = listed.items.into_iter().map(read).collect();
     Ok(Json(EntryList {

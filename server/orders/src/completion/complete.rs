@@ -20,6 +20,7 @@ use binnacle_fleet::logbook;
 use binnacle_fleet::models::{self, ModelJson, StoredModel};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{BinnacleId, EntryId, ModelId};
+use binnacle_platform::signing_keys;
 use binnacle_platform::time::Time;
 
 /// Estimator name of predicted models.
@@ -68,6 +69,7 @@ pub(crate) async fn complete(
         .with_setting(setting)
         .map_err(binnacle_fleet::binnacles::invalid_binnacle)?;
     let account = &change.author.name;
+    let key = signing_keys::current(&mut change.tx, change.now).await?;
     let record = record::make_record(
         vessel_and_compass,
         &change.stored,
@@ -75,6 +77,7 @@ pub(crate) async fn complete(
         &sign_off,
         account,
         &after,
+        &key.public_key(),
     )?;
     let (vessel, compass) = (
         change.stored.summary.vessel_id,

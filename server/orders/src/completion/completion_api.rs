@@ -12,6 +12,7 @@ use crate::evidence::{Evidence, File, Line, archive, predicted_csv, record_pdf, 
 use crate::firms::keys;
 use crate::work_orders::events::OrderEvent;
 use crate::work_orders::log::firm_view;
+use crate::work_orders::log::seal::{OPERATOR, SealedEntry, readers};
 use crate::work_orders::order::Order;
 use crate::work_orders::payload::photograph::Photo;
 use crate::work_orders::payload::signed_record::{KnownKey, RecordedSignature, SubmittedSignature};
@@ -32,6 +33,7 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{FileContent, Id, Json, Params, Valid};
 use binnacle_platform::idempotency::Key;
 use binnacle_platform::ids::{OrderId, PhotoId};
+use binnacle_platform::signing_keys;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -377,21 +379,32 @@ async fn find_evidence(
     let lines = store::list_lines(&app.db, vessel, id, None, i64::MAX).await?;
     // An entry written meanwhile is left for the next archive.
     let lines = lines.into_iter().zip(&stored.log);
-    let lines = lines.map(|((_, line, sha256), entry)| {
-        let text = firm_view::line(reader.tenant, entry, line, &sha256)?;
-        Ok(Line { text, sha256 })
+    let lines = lines.map(|(stored, entry)| {
+        let sealed = SealedEntry {
+            seq: stored.seq,
+            sha256: stored.sha256.clone(),
+            readers: readers(entry.content.event().audience()),
+            seal: stored.seal(),
+        };
+        let text = firm_view::line(reader.tenant, entry, stored.line, &sealed.sha256)?;
+        Ok(Line { text, sealed })
     });
+    let firm = reader.tenant.firm();
     let mut evidence = Evidence {
         order: id.to_string(),
+        reader: firm.map_or(OPERATOR.to_owned(), |firm| firm.to_string()),
         lines: lines.collect::<Result<_>>()?,
         files,
     };
+    let mut tx = app.db.begin().await?;
+    let key = signing_keys::current(&mut tx, app.clock.now().into()).await?;
+    tx.commit().await?;
     let written = tokio::task::spawn_blocking(move || {
         evidence.files.push(File {
             name: "record.pdf".to_owned(),
             bytes: record_pdf(&record)?,
         });
-        archive(evidence)
+        archive(evidence, &key)
     });
     let bytes = written.await??;
     let name = format!("attachment; filename=\"evidence-{id}.zip\"");

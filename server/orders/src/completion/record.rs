@@ -33,6 +33,7 @@ pub(crate) fn make_record(
     sign_off: &SignOff,
     account: &str,
     after: &Binnacle,
+    server_key: &str,
 ) -> Result<String> {
     let (summary, state) = (&stored.summary, stored.state());
     let read = state.first_reading.as_deref().or(state.reading.as_ref());
@@ -101,7 +102,10 @@ pub(crate) fn make_record(
         "predicted_after": prediction.after,
         "model_after": prediction.model_after,
         "photos": photos,
-        "log": { "entries": summary.last_seq, "last_sha256": summary.last_sha256 },
+        "log": {
+            "entries": summary.last_seq, "last_sha256": summary.last_sha256,
+            "server_key": server_key,
+        },
     }))
 }
 

@@ -1,9 +1,9 @@
-//! Coverage of a signature over the record's SHA-256: the record, what is made from it, and the
-//! log up to the entry it names.
+//! Coverage of the adjuster's and the firm's signature over the record's SHA-256: the record, what is
+//! made from it, and the log up to the entry it names.
 //!
 //! Invariant: a file without coverage is reported as such, or as a problem.
 
-use super::archive::LogHead;
+use super::archive::{LogHead, Manifest};
 use super::findings::Findings;
 use super::sheets::{predicted_csv, record_pdf};
 use serde_json::Value;
@@ -16,14 +16,15 @@ pub(super) fn log_head(files: &BTreeMap<String, Vec<u8>>) -> Option<LogHead> {
 }
 
 /// Compares derived files with the record, and reports the record's coverage of an archive with
-/// this number of entries and signatures.
+/// this number of signatures.
 pub(super) fn report_coverage(
+    manifest: &Manifest,
     files: &BTreeMap<String, Vec<u8>>,
-    entries: i64,
     signatures: usize,
     found: &mut Findings,
 ) {
-    check_derived_files(files, found);
+    check_derived_files(manifest, files, found);
+    let entries = manifest.log.entries;
     let Some(head) = log_head(files) else {
         found
             .problems
@@ -56,7 +57,11 @@ pub(super) fn report_coverage(
     }
     if !uncovered.is_empty() {
         found.facts.push(format!(
-            "no signature covers {}: they were written with the record or after it",
+            "{} covers {}: they were written with the record or after it",
+            match &manifest.seal {
+                Some(_) => "only the server's signature",
+                None => "no signature",
+            },
             uncovered.join(", ")
         ));
     }
@@ -67,7 +72,15 @@ pub(super) fn report_coverage(
     }
 }
 
-fn check_derived_files(files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
+/// Compares what is made from the record with what this version makes from it. Another version
+/// draws otherwise; its hash is in the manifest that the server signed.
+fn check_derived_files(
+    manifest: &Manifest,
+    files: &BTreeMap<String, Vec<u8>>,
+    found: &mut Findings,
+) {
+    let version = env!("CARGO_PKG_VERSION");
+    let is_of_this_version = manifest.made_by.as_deref() == Some(version);
     let text = files
         .get("record.json")
         .map(|bytes| std::str::from_utf8(bytes));
@@ -81,11 +94,12 @@ fn check_derived_files(files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) 
     ];
     for (name, made) in made {
         let is_so = made.is_ok_and(|made| files.get(name) == Some(&made));
-        if !is_so {
-            found.problems.push(format!(
-                "{name} differs from what version {} makes from record.json: it was changed, or \
-                    made by another version; the signed file is record.json",
-                env!("CARGO_PKG_VERSION")
+        if !is_so && is_of_this_version {
+            found.wrong(format!("{name} is not what is made from record.json"));
+        } else if !is_so {
+            found.facts.push(format!(
+                "{name} differs from what version {version} makes from record.json: another \
+                 version made it; the file that was signed is record.json"
             ));
         }
     }

@@ -1,19 +1,25 @@
 //! Check of an archive by its own content.
 
-use super::archive::{File, LogHead, Manifest, write};
+use super::archive::{LogHead, Manifest};
 use super::coverage::{self, report_coverage};
 use super::findings::Findings;
+use super::seals::{ReadLine, check_seals};
 use crate::work_orders::log::canonical_json::sha256_hex;
 use crate::work_orders::payload::photograph::Photo;
 use crate::work_orders::payload::signed_record::{Completion, RecordedSignature};
+use binnacle_platform::signing_keys::PublishedKey;
+use binnacle_platform::time::Time;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
 use zip::ZipArchive;
 
-/// Largest evidence of one adjustment, bytes.
+/// Largest evidence of one adjustment, unpacked, bytes.
 const MAX_ARCHIVE_BYTES: u64 = 1 << 30;
+
+/// Newest form of the manifest that is known.
+const VERSION: u32 = 2;
 
 /// Files of every archive; the log names the photographs.
 const FIXED_FILES: [&str; 6] = [
@@ -25,11 +31,9 @@ const FIXED_FILES: [&str; 6] = [
     "record.pdf",
 ];
 
-/// Prefix of facts that anyone could have written who made the archive.
-const UNSIGNED: &str = "the log says, and no signature covers it:";
-
-/// Checks an archive.
-pub fn verify(bytes: &[u8]) -> Findings {
+/// Checks an archive, against the keys that the server published if they are given. How it is
+/// packed does not matter.
+pub fn verify(bytes: &[u8], keys: Option<&[PublishedKey]>) -> Findings {
     let mut found = Findings::default();
     let files = match unpack(bytes, &mut found) {
         Ok(files) => files,
@@ -38,7 +42,6 @@ pub fn verify(bytes: &[u8]) -> Findings {
             return found;
         }
     };
-    check_no_extra_content(bytes, &files, &mut found);
     let manifest: Option<Manifest> = match files
         .get("manifest.json")
         .map(|b| serde_json::from_slice(b))
@@ -53,10 +56,19 @@ pub fn verify(bytes: &[u8]) -> Findings {
         }
         Some(Ok(manifest)) => Some(manifest),
     };
-    if let Some(manifest) = &manifest {
-        check_hashes(manifest, &files, &mut found);
+    let Some(manifest) = manifest else {
+        return found;
+    };
+    if manifest.version > VERSION {
+        found.wrong(format!(
+            "manifest.json is of version {}: a newer release of binnacle-server can check it",
+            manifest.version
+        ));
+        return found;
     }
-    check_log(manifest.as_ref(), &files, &mut found);
+    check_hashes(&manifest, &files, &mut found);
+    let lines = check_log(&manifest, &files, &mut found);
+    check_seals(&manifest, &files, &lines, keys, &mut found);
     found
 }
 
@@ -64,19 +76,20 @@ fn unpack(bytes: &[u8], found: &mut Findings) -> Result<BTreeMap<String, Vec<u8>
     let mut archive =
         ZipArchive::new(Cursor::new(bytes)).map_err(|error| format!("not an archive: {error}"))?;
     let mut files = BTreeMap::new();
+    let mut left = MAX_ARCHIVE_BYTES;
     for index in 0..archive.len() {
         let file = archive.by_index(index);
         let mut file = file.map_err(|error| format!("file {}: {error}", index + 1))?;
         let name = file.name().map(std::borrow::Cow::into_owned);
         let name = name.map_err(|error| format!("file {}: {error}", index + 1))?;
         let mut content = Vec::new();
-        // Bounds a file whose header understates its size.
-        let read = file
-            .by_ref()
-            .take(MAX_ARCHIVE_BYTES)
-            .read_to_end(&mut content);
-        if let Err(error) = read {
-            found.wrong(format!("{name}: {error}"));
+        // Whatever the headers say of sizes.
+        match file.by_ref().take(left).read_to_end(&mut content) {
+            Err(error) => found.wrong(format!("{name}: {error}")),
+            Ok(read) => left -= read as u64,
+        }
+        if left == 0 {
+            return Err("it is larger than 1 GiB when unpacked".to_owned());
         }
         files.insert(name, content);
     }
@@ -87,28 +100,6 @@ fn unpack(bytes: &[u8], found: &mut Findings) -> Result<BTreeMap<String, Vec<u8>
         );
     }
     Ok(files)
-}
-
-/// Reports content beside the archive's files: before, between or behind them, or in duplicate
-/// headers. These files alone make these bytes alone.
-fn check_no_extra_content(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
-    if !found.problems.is_empty() {
-        return;
-    }
-    let mut files: Vec<File> = files
-        .iter()
-        .map(|(name, bytes)| File {
-            name: name.clone(),
-            bytes: bytes.clone(),
-        })
-        .collect();
-    files.sort_by_key(|file| file.name == "manifest.json");
-    if !write(&files).is_ok_and(|made| made == bytes) {
-        found.wrong(
-            "the archive is not in its original form: it has content beside its files, or was \
-                repacked, and an unpacker may show other content than is checked here",
-        );
-    }
 }
 
 fn check_hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
@@ -128,19 +119,29 @@ fn check_hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &
     }
 }
 
-fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
-    let Some(text) = files.get("entries.ndjson") else {
-        found.wrong("entries.ndjson is missing");
-        return;
+/// Checks the log, and what it names. Returns its lines.
+fn check_log(
+    manifest: &Manifest,
+    files: &BTreeMap<String, Vec<u8>>,
+    found: &mut Findings,
+) -> Vec<ReadLine> {
+    let text = files
+        .get("entries.ndjson")
+        .map(|text| std::str::from_utf8(text));
+    let Some(Ok(text)) = text else {
+        found.wrong("entries.ndjson is missing, or is not text");
+        return Vec::new();
     };
-    let Ok(text) = std::str::from_utf8(text) else {
-        found.wrong("entries.ndjson is not text");
-        return;
+    let by = match &manifest.seal {
+        Some(_) => "the log says, and the server signed it:",
+        None => "the log says, and no signature covers it:",
     };
+    let mut lines: Vec<ReadLine> = Vec::new();
     let mut previous: Option<String> = None;
     let mut signed = 0;
     let mut withheld: Vec<String> = Vec::new();
     let mut known: Vec<String> = FIXED_FILES.map(str::to_owned).to_vec();
+    known.extend(manifest.seal.iter().map(|_| "seals.ndjson".to_owned()));
     let mut completed: Option<Completion> = None;
     let mut entries: i64 = 0;
     let recorded = coverage::log_head(files);
@@ -149,7 +150,13 @@ fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, fou
         let at = format!("entries.ndjson, line {entries}");
         let Ok(entry) = serde_json::from_str::<Value>(line) else {
             found.wrong(format!("{at} is not JSON"));
-            previous = Some(sha256_hex(line.as_bytes()));
+            let sha256 = sha256_hex(line.as_bytes());
+            previous = Some(sha256.clone());
+            lines.push(ReadLine {
+                sha256,
+                at: None,
+                is_withheld: false,
+            });
             continue;
         };
         if entry["previous_sha256"].as_str() != previous.as_deref() {
@@ -158,9 +165,7 @@ fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, fou
         if entry["seq"] != entries {
             found.wrong(format!("{at} is not the entry of that number"));
         }
-        if let Some(manifest) = manifest
-            && entry["order"] != manifest.order.as_str()
-        {
+        if entry["order"] != manifest.order.as_str() {
             found.wrong(format!("{at} is of another order"));
         }
         match entry["kind"].as_str() {
@@ -170,24 +175,30 @@ fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, fou
             }
             Some("photo") => known.extend(check_photo(&entry, entries, &at, files, found)),
             Some("signature") => {
-                signed += check_signature(&entry, completed.as_ref(), &at, found);
+                signed += check_signature(&entry, completed.as_ref(), &at, by, found);
             }
             Some("verification") => {
                 let words = entry["content"]["words"].as_str().unwrap_or_default();
                 // The record was made before the vessel sailed.
-                found.facts.push(format!("{UNSIGNED} at sea, {words}"));
+                found.facts.push(format!("{by} at sea, {words}"));
             }
             _ => {}
         }
-        previous = match entry["withheld_sha256"].as_str() {
+        let sha256 = match entry["withheld_sha256"].as_str() {
             Some(sha256) => {
                 withheld.push(entries.to_string());
-                Some(sha256.to_owned())
+                sha256.to_owned()
             }
-            None => Some(sha256_hex(line.as_bytes())),
+            None => sha256_hex(line.as_bytes()),
         };
+        previous = Some(sha256.clone());
+        lines.push(ReadLine {
+            sha256,
+            at: serde_json::from_value::<Time>(entry["at"].clone()).ok(),
+            is_withheld: !entry["withheld_sha256"].is_null(),
+        });
         if let Some(head) = recorded.as_ref().filter(|head| head.entries == entries)
-            && previous.as_deref() != Some(head.last_sha256.as_str())
+            && previous.as_ref() != Some(&head.last_sha256)
         {
             found.wrong(format!("{at} is not the one that record.json names"));
         }
@@ -208,7 +219,7 @@ fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, fou
         entries,
         last_sha256: previous.unwrap_or_default(),
     };
-    if manifest.is_some_and(|manifest| manifest.log != head) {
+    if manifest.log != head {
         found.wrong("the log does not end where the manifest says");
     }
     found.facts.push(format!(
@@ -219,13 +230,14 @@ fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, fou
     // A record other than the signed one covers nothing.
     let text = files.get("record.json").map(|text| sha256_hex(text));
     if completed.is_some_and(|completed| Some(completed.record_sha256) == text) {
-        report_coverage(files, entries, signed, found);
+        report_coverage(manifest, files, signed, found);
     }
     if signed == 0 {
         found
             .facts
             .push("no firm's key has signed the record".to_owned());
     }
+    lines
 }
 
 fn content<T: DeserializeOwned>(entry: &Value, at: &str, found: &mut Findings) -> Option<T> {
@@ -288,6 +300,7 @@ fn check_signature(
     entry: &Value,
     completed: Option<&Completion>,
     at: &str,
+    recorded: &str,
     found: &mut Findings,
 ) -> usize {
     let Some(by) = content::<RecordedSignature>(entry, at, found) else {
@@ -304,12 +317,12 @@ fn check_signature(
     let public_key = &by.signature.public_key;
     found.facts.push(match &by.key {
         Some(key) => format!(
-            "signed by the key {public_key}; {UNSIGNED} {} had registered it as {:?}. Ask the \
+            "signed by the key {public_key}; {recorded} {} had registered it as {:?}. Ask the \
                 firm whether the key is its own",
             key.firm_name, key.name
         ),
         None => format!(
-            "signed by the key {public_key}; {UNSIGNED} no firm had registered it. Ask the firm \
+            "signed by the key {public_key}; {recorded} no firm had registered it. Ask the firm \
                 whether the key is its own"
         ),
     });

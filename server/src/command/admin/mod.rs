@@ -1,4 +1,4 @@
-//! `admin`: creates operators, firms and users, resets users and revokes agents.
+//! `admin`: creates operators, firms and users, resets users, revokes agents and rotates keys.
 
 mod sandbox;
 
@@ -22,7 +22,7 @@ use binnacle_platform::secret::{self, HashMemory};
 use binnacle_platform::session::{self, Role};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
-use binnacle_platform::{http, password, users};
+use binnacle_platform::{http, password, signing_keys, users};
 use clap::Parser;
 use serde_json::json;
 use std::io::Read;
@@ -58,6 +58,7 @@ fn name_of(command: &AdminCommand) -> &'static str {
             Create::PlatformAdmin { .. } => "admin create platform-admin",
         },
         AdminCommand::ResetUser { .. } => "admin reset-user",
+        AdminCommand::RotateSigningKey => "admin rotate-signing-key",
         AdminCommand::RevokeAgent { .. } => "admin revoke-agent",
     }
 }
@@ -66,6 +67,7 @@ async fn run(db: &Db, request: &RequestContext, command: AdminCommand, now: Time
     match command {
         AdminCommand::Create { what } => create(db, request, what, now).await,
         AdminCommand::ResetUser { email } => reset_user(request, &email, now).await,
+        AdminCommand::RotateSigningKey => rotate_signing_key(request, now).await,
         AdminCommand::RevokeAgent { vessel, agent } => {
             request.concerns_vessel(VesselId(vessel), None);
             revoke_agent(request, VesselId(vessel), AgentId(agent), now).await
@@ -108,6 +110,15 @@ async fn reset_user(request: &RequestContext, email: &str, now: Time) -> Made {
         Some((code, expires_at)) => Ok(Ok(json!({ "code": code, "expires_at": expires_at }))),
         None => Ok(Err(format!("--email: no user has the address {email:?}"))),
     }
+}
+
+async fn rotate_signing_key(request: &RequestContext, now: Time) -> Made {
+    let mut tx = request.begin().await?;
+    let key = signing_keys::rotate(&mut tx, now).await?;
+    tx.commit().await?;
+    Ok(Ok(
+        json!({ "public_key": key.public_key(), "created_at": now }),
+    ))
 }
 
 async fn revoke_agent(

@@ -162,7 +162,8 @@ async fn the_example_client_completes_an_order(server: TestServer) {
     client
         .good(&["evidence", order, "--out", "evidence.zip"])
         .await;
-    let theirs = evidence::verify(&std::fs::read(folder.join("evidence.zip")).unwrap());
+    let theirs = std::fs::read(folder.join("evidence.zip")).unwrap();
+    let theirs = evidence::verify(&theirs, None);
     assert!(theirs.problems.is_empty(), "{theirs:?}");
     let facts = theirs.facts.join("\n");
     for fact in [
@@ -173,7 +174,7 @@ async fn the_example_client_completes_an_order(server: TestServer) {
     ] {
         assert!(facts.contains(fact), "{fact}: {facts}");
     }
-    let ours = evidence::verify(&job.evidence().await);
+    let ours = evidence::verify(&job.evidence().await, None);
     assert!(ours.problems.is_empty(), "{ours:?}");
     assert!(!ours.facts.join("\n").contains("withheld"), "{ours:?}");
     let seen = job.view_order().await;

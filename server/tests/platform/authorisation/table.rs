@@ -129,6 +129,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("DELETE /sessions/{id}", OWN_BY_ID),
     ("GET /sign-in-rules", ADMIN_READS),
     ("PUT /sign-in-rules", ADMIN_IN_PERSON),
+    ("GET /signing-keys", OPEN),
     ("POST /streams", AGENT),
     ("PUT /streams/{stream}/batches/{seq}", AGENT),
     ("GET /streams/{stream}/downlink", AGENT),

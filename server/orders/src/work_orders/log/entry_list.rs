@@ -1,5 +1,6 @@
 //! Page of an order's log, as a response.
 
+use binnacle_platform::signing_keys::Seal;
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -12,6 +13,9 @@ pub(crate) struct EntryLine {
     pub(crate) seq: i64,
     /// SHA-256 of the line as it stands in the archive, hexadecimal.
     pub(crate) sha256: String,
+    /// The server's signature over the entry; none of one from before servers signed.
+    #[schema(required)]
+    pub(crate) seal: Option<Seal>,
     /// The entry: `kind`, `at`, `author`, `previous_sha256` and `content`.
     #[schema(value_type = Object)]
     pub(crate) entry: Value,

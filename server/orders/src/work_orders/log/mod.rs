@@ -4,3 +4,4 @@ pub(crate) mod canonical_json;
 pub(crate) mod entry;
 pub(crate) mod entry_list;
 pub(crate) mod firm_view;
+pub(crate) mod seal;

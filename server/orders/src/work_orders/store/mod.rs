@@ -7,8 +7,8 @@ mod write;
 
 pub(crate) use idempotency_keys::{find as find_written, once as write_once};
 pub(crate) use queries::{
-    ListedOrders, find, find_last_completed, find_names, find_photo, find_record, find_summary,
-    find_vessel, find_vessel_for_firm, list, list_lines, list_overdue, lock,
+    ListedOrders, StoredLine, find, find_last_completed, find_names, find_photo, find_record,
+    find_summary, find_vessel, find_vessel_for_firm, list, list_lines, list_overdue, lock,
 };
 pub(crate) use stored_order::StoredOrder;
 pub use write::lock_compass;

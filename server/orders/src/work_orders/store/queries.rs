@@ -9,6 +9,7 @@ use crate::work_orders::summary::{Filter, Summary};
 use binnacle_platform::db::{self, Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, PhotoId, VesselId};
+use binnacle_platform::signing_keys::Seal;
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 use futures_util::future::BoxFuture;
@@ -191,18 +192,38 @@ pub(crate) async fn find(db: &Db, tenant: Tenant, id: OrderId) -> Result<StoredO
     StoredOrder::read(summary, lines)
 }
 
-/// Lists the original lines of an order's log after a number, with their hashes.
+/// Original line of an order's log.
+#[derive(sqlx::FromRow)]
+pub(crate) struct StoredLine {
+    /// Number of the entry, from 1.
+    pub(crate) seq: i64,
+    pub(crate) line: String,
+    /// SHA-256 of the line, hexadecimal.
+    pub(crate) sha256: String,
+    seal_key: Option<String>,
+    seal: Option<String>,
+}
+
+impl StoredLine {
+    /// Returns the server's signature; none of a line from before servers signed.
+    pub(crate) fn seal(&self) -> Option<Seal> {
+        let (key, signature) = self.seal_key.clone().zip(self.seal.clone())?;
+        Some(Seal { key, signature })
+    }
+}
+
+/// Lists the original lines of an order's log after a number.
 pub(crate) async fn list_lines(
     db: &Db,
     vessel: VesselId,
     id: OrderId,
     after: Option<i64>,
     limit: i64,
-) -> Result<Vec<(i64, String, String)>> {
+) -> Result<Vec<StoredLine>> {
     Ok(rows!(
         db,
-        (i64, String, String),
-        "SELECT seq, line, sha256 FROM work_order_entries
+        StoredLine,
+        "SELECT seq, line, sha256, seal_key, seal FROM work_order_entries
          WHERE vessel_id = $1 AND order_id = $2 AND seq > $3
          ORDER BY seq
          LIMIT $4",

@@ -3,6 +3,7 @@
 use crate::work_orders::events::{Event, OrderEvent};
 use crate::work_orders::log::canonical_json::{canonical, sha256_hex};
 use crate::work_orders::log::entry::{Author, Entry};
+use crate::work_orders::log::seal::{SealedEntry, readers};
 use crate::work_orders::new_order::NewOrder;
 use crate::work_orders::offers::Offers;
 use crate::work_orders::state::State;
@@ -11,6 +12,7 @@ use crate::work_orders::summary::Summary;
 use binnacle_platform::db::{Tx, execute, row};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, OrderId, PhotoId, VesselId};
+use binnacle_platform::signing_keys;
 use binnacle_platform::time::Time;
 use uuid::Uuid;
 
@@ -120,16 +122,27 @@ pub(crate) async fn append(
     // A number without a JSON form (NaN) would make the log unreadable.
     serde_json::from_str::<Entry>(&line)?;
     let sha256 = sha256_hex(line.as_bytes());
+    let key = signing_keys::current(&mut *tx, now).await?;
+    let mut sealed = SealedEntry {
+        seq: entry.seq,
+        sha256: sha256.clone(),
+        readers: readers(entry.content.event().audience()),
+        seal: None,
+    };
+    sealed.sign(&summary.id.to_string(), &key)?;
+    let seal = sealed.seal.as_ref();
     execute!(
         &mut *tx,
-        "INSERT INTO work_order_entries (vessel_id, order_id, seq, id, line, sha256)
-         VALUES ($1, $2, $3, $4, $5, $6)",
+        "INSERT INTO work_order_entries (vessel_id, order_id, seq, id, line, sha256, seal_key, seal)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
         summary.vessel_id,
         summary.id,
         entry.seq,
         id,
         line,
-        sha256.as_str()
+        sha256.as_str(),
+        seal.map(|seal| seal.key.as_str()),
+        seal.map(|seal| seal.signature.as_str())
     )?;
     summary.last_seq = entry.seq;
     summary.last_sha256 = sha256;
