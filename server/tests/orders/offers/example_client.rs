@@ -167,8 +167,8 @@ async fn the_example_client_completes_an_order(server: TestServer) {
     assert!(theirs.problems.is_empty(), "{theirs:?}");
     let facts = theirs.facts.join("\n");
     for fact in [
-        "no signature covers it: rosa had registered it as \"Office\"",
-        "no signature covers it: no firm had registered it",
+        "the server signed it: rosa had registered it as \"Office\"",
+        "the server signed it: no firm had registered it",
         // The list of the firms that get the offer.
         "entries 2 are withheld: their content cannot be checked",
     ] {
