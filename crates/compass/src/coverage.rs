@@ -57,6 +57,39 @@ pub struct CoverageCell {
     pub samples: u64,
 }
 
+impl Coverage {
+    /// Adds the counts of other samples.
+    pub fn append(&mut self, other: &Coverage) {
+        for band in &other.bands {
+            let from = band.magnetic_latitude_from_deg;
+            let place = self
+                .bands
+                .binary_search_by_key(&from, |known| known.magnetic_latitude_from_deg);
+            match place {
+                Ok(place) => self.bands[place].append(band),
+                Err(place) => self.bands.insert(place, *band),
+            }
+        }
+        let key = |cell: &CoverageCell| (cell.magnetic_latitude_from_deg, cell.heading_from_deg);
+        for cell in &other.cells {
+            match self.cells.binary_search_by_key(&key(cell), key) {
+                Ok(place) => self.cells[place].samples += cell.samples,
+                Err(place) => self.cells.insert(place, *cell),
+            }
+        }
+    }
+}
+
+impl CoverageBand {
+    fn append(&mut self, other: &CoverageBand) {
+        self.h_nt_from = self.h_nt_from.min(other.h_nt_from);
+        self.h_nt_to = self.h_nt_to.max(other.h_nt_to);
+        self.z_nt_from = self.z_nt_from.min(other.z_nt_from);
+        self.z_nt_to = self.z_nt_to.max(other.z_nt_to);
+        self.samples += other.samples;
+    }
+}
+
 /// Magnetic latitude in degrees, atan(tan(dip)/2), north positive: the latitude with this
 /// dip on a dipole earth.
 pub fn magnetic_latitude_deg(h_nt: f64, z_nt: f64) -> f64 {
@@ -160,6 +193,22 @@ mod tests {
                 },
             ]
         );
+    }
+
+    #[test]
+    fn counts_of_two_parts_add_up_to_those_of_all() {
+        let samples = [
+            (heading(0.0), 20_000.0, 40_000.0),
+            (heading(14.9), 21_000.0, 42_000.0),
+            (heading(200.0), 31_000.0, -2.0),
+            (heading(359.9), 30_000.0, -1.0),
+        ];
+        for parted in 0..=samples.len() {
+            let (one, other) = samples.split_at(parted);
+            let mut counted = coverage(one.iter().copied());
+            counted.append(&coverage(other.iter().copied()));
+            assert_eq!(counted, coverage(samples), "{parted}");
+        }
     }
 
     #[test]

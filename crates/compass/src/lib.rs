@@ -17,6 +17,7 @@ pub mod time;
 
 pub mod model;
 pub mod sample;
+pub mod segment;
 
 pub mod ship;
 

@@ -104,6 +104,15 @@ impl LogbookEntry {
         Ok(self)
     }
 
+    /// Returns the entry as it stood just before a time: none if it began later, and open if it
+    /// ended later.
+    pub fn known_before(&self, end: Timestamp) -> Option<LogbookEntry> {
+        (self.from < end).then(|| LogbookEntry {
+            to: self.to.filter(|to| *to < end),
+            ..self.clone()
+        })
+    }
+
     /// Returns the entry as known at a time: a later end is still open.
     pub fn as_of(&self, until: Timestamp) -> LogbookEntry {
         LogbookEntry {

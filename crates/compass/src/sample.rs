@@ -4,6 +4,7 @@ use crate::angle::{CompassHeading, CourseOverGround, TrueHeading};
 use crate::position::Position;
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 use std::ops::RangeInclusive;
 
 /// Rate of turn that a sample may have, degrees a minute.
@@ -103,6 +104,47 @@ impl Sample {
             position_reckoned: false,
         }
     }
+}
+
+/// Puts samples in order of time and then of everything else, and drops repetitions: the order in
+/// which they arrived changes nothing.
+pub fn sort_distinct(samples: &mut Vec<Sample>) {
+    samples.sort_by(in_order);
+    samples.dedup_by(|a, b| in_order(a, b) == Ordering::Equal);
+}
+
+fn in_order(a: &Sample, b: &Sample) -> Ordering {
+    let numbers = |s: &Sample| {
+        // A missing value sorts first.
+        let or_first = |x: Option<f64>| x.unwrap_or(f64::NEG_INFINITY);
+        let number = |source: SourceId| f64::from(source.number());
+        [
+            s.position.lat_deg(),
+            s.position.lon_deg(),
+            s.compass.degrees(),
+            or_first(s.gyro.map(TrueHeading::degrees)),
+            or_first(s.satellite.map(TrueHeading::degrees)),
+            or_first(s.sog_kn),
+            or_first(s.rate_of_turn_deg_min),
+            or_first(s.spread_deg),
+            f64::from(s.windows),
+            or_first(s.cog.map(CourseOverGround::degrees)),
+            or_first(s.roll_deg),
+            or_first(s.roll_spread_deg),
+            or_first(s.temperature_c),
+            or_first(s.gyro_source.map(number)),
+            or_first(s.satellite_source.map(number)),
+            f64::from(u8::from(s.position_reckoned)),
+        ]
+    };
+    let by_number = || {
+        let pairs = numbers(a).into_iter().zip(numbers(b));
+        pairs
+            .map(|(a, b)| a.total_cmp(&b))
+            .find(|o| o.is_ne())
+            .unwrap_or(Ordering::Equal)
+    };
+    a.time.cmp(&b.time).then_with(by_number)
 }
 
 /// Identity of an instrument on board: the same number whenever the same source feeds a role.

@@ -11,12 +11,14 @@ use binnacle_analysis::fit::Observation;
 use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_compass::angle::TrueHeading;
 use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::position::Position;
 use binnacle_compass::result::Analysis;
 use binnacle_compass::sample::Sample;
+use binnacle_compass::segment::Segment;
 use binnacle_compass::settings::AnalysisSettings;
 use binnacle_compass::time::Timestamp;
-use binnacle_tracking::{Input, Voyage};
+use binnacle_tracking::{Input, Part, Voyage};
 use divan::Bencher;
 use voyages::{Faults, Variety, sail_on};
 
@@ -41,35 +43,30 @@ fn analyse_gyro_and_satellite(bencher: Bencher<'_, '_>, days: u32) {
     bench_analysis(bencher, days, &faults);
 }
 
-/// A new day on a voyage that was kept after some days: read from its bytes, and put away again.
-#[divan::bench(args = [60, 423], sample_count = 10, sample_size = 1)]
-fn new_day_on_kept_voyage(bencher: Bencher<'_, '_>, days: u32) {
-    let voyage = sail_on(
-        igrf,
-        3,
-        Variety::Medium,
-        f64::from(days + 1),
-        &Faults::USUAL,
-    );
+/// A new batch of six hours on a voyage of some days whose last state is kept: read from its bytes.
+#[divan::bench(args = [60, 423, 1100], sample_count = 10, sample_size = 1)]
+fn new_batch_on_kept_voyage(bencher: Bencher<'_, '_>, days: u32) {
+    let voyage = sail_on(igrf, 3, Variety::Medium, f64::from(days), &Faults::USUAL);
     let samples: Vec<Sample> = voyage.observations.iter().map(sample).collect();
-    let (before, day) = samples.split_at(samples.len() - 144);
-    let prior = ShipPrior::population();
-    let input = |samples| Input {
-        samples,
-        logbook: &[],
-        azimuths: &[],
-        prior: &prior,
-        settings: AnalysisSettings::default(),
-    };
-    let mut kept = Voyage::begin(&AnalysisSettings::default(), &prior);
-    kept.sail_on(&input(before));
+    let segments: Vec<&[Sample]> = samples
+        .chunk_by(|a, b| Segment::of(a.time) == Segment::of(b.time))
+        .collect();
+    let (last, closed) = segments.split_last().unwrap();
+    let mut kept = Voyage::begin(
+        &AnalysisSettings::default(),
+        &ShipPrior::population(),
+        ReferenceGrade::Heading,
+    );
+    for segment in closed {
+        let end = Segment::of(segment[0].time).end();
+        kept.advance(&Part::new(segment, &[], &[], end));
+    }
     let bytes = postcard::to_allocvec(&kept).unwrap();
     bencher
         .counter(divan::counter::BytesCount::of_slice(&bytes))
         .bench_local(|| {
-            let mut voyage: Voyage = postcard::from_bytes(&bytes).unwrap();
-            voyage.sail_on(&input(day));
-            postcard::to_allocvec(&voyage).unwrap().len()
+            let voyage: Voyage = postcard::from_bytes(&bytes).unwrap();
+            voyage.report(&Part::new(last, &[], &[], None))
         });
 }
 

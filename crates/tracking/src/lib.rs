@@ -28,8 +28,9 @@
 //! **Learning.** Sizes of habits have log-normal priors and follow the slope of the likelihood
 //! (recursive maximum likelihood: Ljung & Söderström 1983, chapter 3).
 //!
-//! **Kept state.** A [`Voyage`] is a plain value with all that the reading of the next sample
-//! needs: kept and read again, it goes on as if it had never been put away.
+//! **A fold.** [`analyse`] is a fold over segments of 30 days. A [`Voyage`] is the state between
+//! two of them: a plain value that, kept and read again, goes on as if it had never been put away.
+//! Samples of more than a month ago are settled: no later one changes what is said of them.
 //!
 //! **Constants.** Those of the detector stand in one list (`constants`), each with unit and
 //! source; what is known of ships and events beforehand stands in tables.
@@ -44,4 +45,4 @@ mod state_space;
 pub mod validation;
 mod weighing;
 
-pub use report::{Input, Voyage, analyse};
+pub use report::{Input, Part, Voyage, analyse};

@@ -72,6 +72,8 @@ async fn analysed(server: &TestServer, vessel_id: VesselId, compass_id: CompassI
             resumes: None,
             data_from: None,
             data_until: None,
+            left_out_laden: 0,
+            left_out_alongside: 0,
             references: None,
             noise: None,
             model: Some(model),

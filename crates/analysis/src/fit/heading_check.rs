@@ -1,7 +1,9 @@
 //! Distribution of observations over headings.
 
 use crate::observation::Observation;
+use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::result::FitError;
+use serde::{Deserialize, Serialize};
 
 /// Sectors of heading, of 15° each.
 const SECTORS: usize = 24;
@@ -11,40 +13,76 @@ const NEEDED_SECTORS: u32 = 6;
 /// Widest gap: beyond a wider one the deviation would be the prior's alone.
 const ALLOWED_GAP_DEG: f64 = 240.0;
 
+/// Least and greatest heading in each sector: all gaps that matter lie between these.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Headings {
+    ends: [Option<(f64, f64)>; SECTORS],
+}
+
+impl Headings {
+    /// Adds a heading.
+    pub fn add(&mut self, compass: CompassHeading) {
+        let heading = compass.degrees();
+        self.widen(
+            heading as usize / SECTOR_DEG as usize % SECTORS,
+            heading,
+            heading,
+        );
+    }
+
+    /// Adds all headings of others.
+    pub fn append(&mut self, others: &Headings) {
+        for (sector, ends) in others.ends.iter().enumerate() {
+            if let Some((from, to)) = *ends {
+                self.widen(sector, from, to);
+            }
+        }
+    }
+
+    fn widen(&mut self, sector: usize, from: f64, to: f64) {
+        let (least, most) = self.ends[sector].get_or_insert((from, to));
+        *least = least.min(from);
+        *most = most.max(to);
+    }
+
+    /// Checks that they suffice for a model.
+    ///
+    /// # Errors
+    /// [`FitError::TooFewHeadings`] with the missing sectors.
+    pub fn check(&self) -> Result<(), FitError> {
+        let filled = self.ends.map(|ends| ends.is_some());
+        let found = filled.iter().filter(|&&filled| filled).count() as u32;
+        let mut widest_gap_deg: f64 = 0.0;
+        let ends = || self.ends.iter().flatten().copied();
+        let around = ends().next();
+        let around = around.map(|(least, most)| (least + 360.0, most + 360.0));
+        let next = ends().skip(1).chain(around);
+        for ((_, most), (least, _)) in ends().zip(next) {
+            widest_gap_deg = widest_gap_deg.max(least - most);
+        }
+        if found >= NEEDED_SECTORS && widest_gap_deg <= ALLOWED_GAP_DEG {
+            return Ok(());
+        }
+        Err(FitError::TooFewHeadings {
+            found,
+            needed: NEEDED_SECTORS,
+            widest_gap_deg,
+            allowed_gap_deg: ALLOWED_GAP_DEG,
+            missing_deg: missing(&filled),
+        })
+    }
+}
+
 /// Checks that observations lie on enough headings for a model.
 ///
 /// # Errors
 /// [`FitError::TooFewHeadings`] with the missing sectors.
-pub fn check_headings(rows: &[Observation]) -> Result<(), FitError> {
-    // Least and greatest heading in each degree: all gaps that matter lie between these.
-    let mut ends: [Option<(f64, f64)>; 360] = [None; 360];
-    for heading in rows.iter().map(|o| o.compass.degrees()) {
-        let (least, most) = ends[heading as usize % 360].get_or_insert((heading, heading));
-        *least = least.min(heading);
-        *most = most.max(heading);
+pub(super) fn check_headings(rows: &[Observation]) -> Result<(), FitError> {
+    let mut headings = Headings::default();
+    for row in rows {
+        headings.add(row.compass);
     }
-    let mut filled = [false; SECTORS];
-    for (filled, of) in filled.iter_mut().zip(ends.chunks(SECTOR_DEG as usize)) {
-        *filled = of.iter().any(Option::is_some);
-    }
-    let found = filled.iter().filter(|&&filled| filled).count() as u32;
-    let mut widest_gap_deg: f64 = 0.0;
-    let around = ends.iter().flatten().next();
-    let around = around.map(|(least, most)| (least + 360.0, most + 360.0));
-    let next = ends.iter().flatten().copied().skip(1).chain(around);
-    for ((_, most), (least, _)) in ends.iter().flatten().zip(next) {
-        widest_gap_deg = widest_gap_deg.max(least - most);
-    }
-    if found >= NEEDED_SECTORS && widest_gap_deg <= ALLOWED_GAP_DEG {
-        return Ok(());
-    }
-    Err(FitError::TooFewHeadings {
-        found,
-        needed: NEEDED_SECTORS,
-        widest_gap_deg,
-        allowed_gap_deg: ALLOWED_GAP_DEG,
-        missing_deg: missing(&filled),
-    })
+    headings.check()
 }
 
 /// Returns ranges of empty sectors, each by its first degree and the one after its last; a

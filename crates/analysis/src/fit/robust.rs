@@ -129,7 +129,7 @@ fn fit_usable(
     quality.cautions.extend(caution);
     quality.cautions.extend(time_outliers::long_gap(rows));
     let mut covariance = fitted.covariance;
-    if let Some(possible) = possible_mistake(rows) {
+    if let Some(possible) = possible_mistake(rows, rows.len() as u64) {
         covariance[PARAMETERS][PARAMETERS] += possible.variance_deg2;
         quality.cautions.push(possible.caution);
     }

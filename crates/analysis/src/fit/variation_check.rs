@@ -105,10 +105,10 @@ pub(super) fn check_variation(rows: Vec<Row>) -> Result<(), FitError> {
     }
 }
 
-/// Returns the likeliest mistake of the reference of these observations, where the compass's
+/// Returns the likeliest mistake of the reference of these observations, some of so many, where the compass's
 /// zero is off by about the variation and the samples do not show why; none where that is
 /// unlikely.
-pub fn possible_mistake(observations: &[Observation]) -> Option<PossibleMistake> {
+pub fn possible_mistake(observations: &[Observation], count: u64) -> Option<PossibleMistake> {
     let rows = observations.iter().map(|o| Row {
         compass: o.compass,
         deviation_deg: o.deviation.degrees_east(),
@@ -116,7 +116,7 @@ pub fn possible_mistake(observations: &[Observation]) -> Option<PossibleMistake>
         h_nt: o.h_nt,
         z_nt: o.z_nt,
     });
-    let watches = observations.len() as f64 / ROWS_OF_WATCH;
+    let watches = count as f64 / ROWS_OF_WATCH;
     let rows = thinned(rows.collect());
     let as_read = BestShip::find(&rows, 0.0)?;
     let mistakes = VariationMistake::ALL.into_iter().filter_map(|mistake| {

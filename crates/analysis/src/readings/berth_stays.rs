@@ -201,6 +201,8 @@ fn berth_change(stay: &Range<usize>, readings: &[Reading], error: &StayError) ->
         from_latest: from,
         detected_at: detected_at.unwrap_or(last),
         confirmed: is_over,
+        position: None,
+        disturbed_deg: None,
         withdrawn: false,
         cause: Cause::BerthSteel,
         causes,

@@ -30,6 +30,8 @@ pub fn interference(readings: &[Reading]) -> Vec<Change> {
                 from_latest: time,
                 detected_at: time,
                 confirmed: true,
+                position: None,
+                disturbed_deg: None,
                 withdrawn: false,
                 cause: Cause::GnssInterference,
                 causes: vec![CauseProbability {

@@ -3,16 +3,15 @@
 use super::logbook_rules::{exclusion_by_entry, exclusion_by_kind};
 use crate::fit::HeadingReading;
 use crate::gyro_speed_error::gyro_speed_error_deg;
-use binnacle_compass::angle::{CourseOverGround, TrueHeading, Variation};
+use binnacle_compass::angle::{TrueHeading, Variation};
 use binnacle_compass::field::{FieldAt, FieldModel};
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::result::{LastPlace, SampleDiagnostic, SampleReason};
-use binnacle_compass::sample::{Sample, SourceId};
+use binnacle_compass::sample::{Sample, sort_distinct};
 use binnacle_compass::settings::{AnalysisSettings, GyroSpeedError};
 use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
 use binnacle_compass::time::Timestamp;
-use std::cmp::Ordering;
 
 const DAY_MICROS: i64 = 86_400_000_000;
 
@@ -57,8 +56,7 @@ pub fn readings(
     grade: ReferenceGrade,
 ) -> Vec<Reading> {
     let mut sorted = samples.to_vec();
-    sorted.sort_by(in_order);
-    sorted.dedup_by(|a, b| in_order(a, b) == Ordering::Equal);
+    sort_distinct(&mut sorted);
     let excluding = logbook
         .iter()
         .filter(|e| exclusion_by_kind(e.kind).is_some());
@@ -184,39 +182,4 @@ impl DailyField {
         }
         self.at_noon.as_ref()?.at(sample.position, 0.0).ok()
     }
-}
-
-/// Orders samples by time and then by everything else, so that the order in which they
-/// arrived changes nothing.
-fn in_order(a: &Sample, b: &Sample) -> Ordering {
-    let numbers = |s: &Sample| {
-        // A missing value sorts first.
-        let or_first = |x: Option<f64>| x.unwrap_or(f64::NEG_INFINITY);
-        let number = |source: SourceId| f64::from(source.number());
-        [
-            s.position.lat_deg(),
-            s.position.lon_deg(),
-            s.compass.degrees(),
-            or_first(s.gyro.map(TrueHeading::degrees)),
-            or_first(s.satellite.map(TrueHeading::degrees)),
-            or_first(s.sog_kn),
-            or_first(s.rate_of_turn_deg_min),
-            or_first(s.spread_deg),
-            f64::from(s.windows),
-            or_first(s.cog.map(CourseOverGround::degrees)),
-            or_first(s.roll_deg),
-            or_first(s.roll_spread_deg),
-            or_first(s.temperature_c),
-            or_first(s.gyro_source.map(number)),
-            or_first(s.satellite_source.map(number)),
-        ]
-    };
-    let by_number = || {
-        let pairs = numbers(a).into_iter().zip(numbers(b));
-        pairs
-            .map(|(a, b)| a.total_cmp(&b))
-            .find(|o| o.is_ne())
-            .unwrap_or(Ordering::Equal)
-    };
-    a.time.cmp(&b.time).then_with(by_number)
 }

@@ -277,6 +277,8 @@ fn stuck_change(readings: &[Reading], found: &Stuck) -> Change {
         from_latest: from,
         detected_at: readings[found.shown_at].sample().time,
         confirmed: true,
+        position: None,
+        disturbed_deg: None,
         withdrawn: false,
         cause: Cause::CompassFault,
         causes: vec![CauseProbability {

@@ -4,7 +4,7 @@ mod json;
 mod reference_grade;
 mod variation_mistake;
 
-pub use reference_grade::ReferenceGrade;
+pub use reference_grade::{Directions, ReferenceGrade};
 pub use variation_mistake::VariationMistake;
 
 use crate::time::Timestamp;

@@ -23,12 +23,9 @@ impl ReferenceGrade {
     /// Returns the grade of a vessel by all samples of a compass: that of course over ground if
     /// none has a heading by gyro or satellite compass, and some have a course.
     pub fn of(samples: &[Sample]) -> ReferenceGrade {
-        let has_heading = |sample: &Sample| sample.gyro.or(sample.satellite).is_some();
-        if samples.iter().any(has_heading) || samples.iter().all(|sample| sample.cog.is_none()) {
-            ReferenceGrade::Heading
-        } else {
-            ReferenceGrade::CourseOverGround
-        }
+        let mut directions = Directions::default();
+        directions.note(samples);
+        directions.grade()
     }
 
     /// Returns true for gyro or satellite compass.
@@ -36,6 +33,32 @@ impl ReferenceGrade {
     #[allow(clippy::trivially_copy_pass_by_ref)]
     pub fn is_heading(&self) -> bool {
         *self == ReferenceGrade::Heading
+    }
+}
+
+/// Kinds of directions that samples have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Directions {
+    heading: bool,
+    course: bool,
+}
+
+impl Directions {
+    /// Notes those of samples.
+    pub fn note(&mut self, samples: &[Sample]) {
+        for sample in samples {
+            self.heading |= sample.gyro.or(sample.satellite).is_some();
+            self.course |= sample.cog.is_some();
+        }
+    }
+
+    /// Returns the grade of a vessel by all of them.
+    pub fn grade(self) -> ReferenceGrade {
+        if self.heading || !self.course {
+            ReferenceGrade::Heading
+        } else {
+            ReferenceGrade::CourseOverGround
+        }
     }
 }
 

@@ -15,7 +15,11 @@ use serde::{Deserialize, Serialize};
 
 /// Name of the estimator, kept with its models. It changes whenever the same input may lead
 /// to another model.
-pub const ESTIMATOR: &str = "hypotheses-3";
+pub const ESTIMATOR: &str = "hypotheses-4";
+
+/// Number of the form in which the state of an analysis is kept. It changes whenever the state has
+/// other fields: one of another form is not read.
+pub const STATE_FORM: u32 = 1;
 
 /// Result of an analysis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -89,6 +93,12 @@ pub struct Epoch {
     pub data_from: Option<Timestamp>,
     /// Time of its last sample.
     pub data_until: Option<Timestamp>,
+    /// Samples that are left out because of magnetic cargo.
+    #[serde(default)]
+    pub left_out_laden: u64,
+    /// Samples that are left out because of a berth.
+    #[serde(default)]
+    pub left_out_alongside: u64,
     /// Comparison of gyro and satellite compass.
     pub references: Option<ReferenceCheck>,
     /// Estimated standard deviation of each kind of noise.

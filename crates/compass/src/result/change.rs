@@ -1,5 +1,6 @@
 //! A change in the result of an analysis.
 
+use crate::position::Position;
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
@@ -32,6 +33,12 @@ pub struct Change {
     pub step: Option<Step>,
     /// End of the change; none while it lasts.
     pub ended: Option<Timestamp>,
+    /// Approximate place of the ship while a passing disturbance lasted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position: Option<Position>,
+    /// Greatest error of the compass while it lasted, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disturbed_deg: Option<f64>,
 }
 
 /// A step of permanent magnetism over λ, nT, with its standard errors.

@@ -182,6 +182,8 @@ mod tests {
             from_latest: at(10.0),
             detected_at: at(10.5),
             confirmed: true,
+            position: None,
+            disturbed_deg: None,
             withdrawn: false,
             cause: Cause::LocalAnomaly,
             causes: [(Cause::LocalAnomaly, 0.8), (Cause::MagneticStorm, 0.2)]

@@ -13,7 +13,7 @@ mod refusal;
 pub use advice::{
     Advice, AzimuthAdvice, Band, HeadingRange, HeadingSuggestion, LatitudeSuggestion, SailNext,
 };
-pub use analysis::{Analysis, ESTIMATOR, Epoch, LastPlace};
+pub use analysis::{Analysis, ESTIMATOR, Epoch, LastPlace, STATE_FORM};
 pub use change::{Cause, CauseProbability, Change, Step};
 pub use diagnostic::{SampleDiagnostic, SampleReason};
 pub use fleet::{FleetDisturbance, weigh_with_fleet};

@@ -8,6 +8,7 @@
 //! for weeks.
 
 use super::epochs::Span;
+use super::past::{Past, Piece};
 use crate::constants::{DAY_S, KEPT_ROWS, REPORTED_WITHIN_S, SETTLED_S};
 use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
@@ -48,9 +49,13 @@ fn is_laden(span: &Span<'_>, own: &[Reading]) -> bool {
     let Some(cause) = span.begun_by_change.filter(|_| !span.is_return) else {
         return false;
     };
-    let count =
-        |reason: Option<SampleReason>| own.iter().filter(|r| r.diagnostic.reason == reason).count();
-    cause == Cause::MagneticCargo || count(Some(SampleReason::MagneticCargo)) > count(None)
+    let count = |reason: Option<SampleReason>| {
+        let found = own.iter().filter(|r| r.diagnostic.reason == reason);
+        found.count() as u64
+    };
+    let past = |of: fn(&Piece) -> u64| span.past.iter().map(of).sum::<u64>();
+    let laden = count(Some(SampleReason::MagneticCargo)) + past(|piece| piece.laden);
+    cause == Cause::MagneticCargo || laden > count(None) + past(|piece| piece.free)
 }
 
 /// Includes the readings that an open entry leaves out, where nothing sets them apart from
@@ -58,6 +63,7 @@ fn is_laden(span: &Span<'_>, own: &[Reading]) -> bool {
 pub(super) fn include_contradicted(
     spans: &[Span<'_>],
     readings: &mut [Reading],
+    past: &Past,
     logbook: &[LogbookEntry],
 ) -> Vec<ContradictedEntry> {
     let Some(until) = readings.last().map(|r| r.sample().time) else {
@@ -65,7 +71,7 @@ pub(super) fn include_contradicted(
     };
     let entries = without_end(logbook, until);
     let contradicted: Vec<ContradictedEntry> = entries
-        .filter_map(|entry| contradicted(entry, spans, readings))
+        .filter_map(|entry| contradicted(entry, spans, readings, past))
         .collect();
     if contradicted.is_empty() {
         return contradicted;
@@ -99,8 +105,9 @@ fn contradicted(
     entry: &LogbookEntry,
     spans: &[Span<'_>],
     readings: &[Reading],
+    past: &Past,
 ) -> Option<ContradictedEntry> {
-    let first = readings.first()?.sample().time;
+    let first = past.from().or(readings.first().map(|r| r.sample().time))?;
     let until = readings.last()?.sample().time;
     let from = entry.from.max(first);
     let loaded = from.plus_seconds(-REPORTED_WITHIN_S);
@@ -113,8 +120,7 @@ fn contradicted(
     });
     let mut starts = std::iter::once((from, loaded, false)).chain(returns);
     starts.find_map(|(since, after, is_back)| {
-        let laden = readings.partition_point(|r| r.sample().time < since);
-        let many = readings.get(laden + KEPT_ROWS)?.sample().time;
+        let many = shown(since, readings, past)?;
         let by = many.max(since.plus_seconds(SETTLED_S));
         let is_apart = begun().any(|(at, _)| at > after && at <= by);
         let later = begun().map(|(at, _)| at).find(|at| *at > by);
@@ -128,9 +134,24 @@ fn contradicted(
     })
 }
 
+/// Returns the time by which there are enough readings since another for cargo to show.
+fn shown(since: Timestamp, readings: &[Reading], past: &Past) -> Option<Timestamp> {
+    let mut wanting = KEPT_ROWS as u64;
+    for piece in past.pieces.iter().filter(|piece| piece.from >= since) {
+        let Some(left) = wanting.checked_sub(piece.readings) else {
+            return Some(piece.until);
+        };
+        wanting = left;
+    }
+    let laden = readings.partition_point(|r| r.sample().time < since);
+    let shown = readings.get(laden + wanting as usize)?;
+    Some(shown.sample().time)
+}
+
 /// Returns the notices of open cargo entries.
 pub(super) fn notices(
     readings: &[Reading],
+    past: &Past,
     logbook: &[LogbookEntry],
     contradicted: &[ContradictedEntry],
 ) -> Vec<String> {
@@ -145,7 +166,7 @@ pub(super) fn notices(
                 .find(|found| (found.from, found.to) == (entry.from, entry.to));
             match found {
                 Some(found) => Some(contradiction(entry, found)),
-                None => exclusion(entry, readings),
+                None => exclusion(entry, readings, past),
             }
         })
         .collect()
@@ -178,11 +199,13 @@ fn contradiction(entry: &LogbookEntry, found: &ContradictedEntry) -> String {
 }
 
 /// Returns the notice of an entry that leaves samples out.
-fn exclusion(entry: &LogbookEntry, readings: &[Reading]) -> Option<String> {
+fn exclusion(entry: &LogbookEntry, readings: &[Reading], past: &Past) -> Option<String> {
     let left_out = readings.iter().filter(|r| {
         r.sample().time >= entry.from && r.diagnostic.reason == Some(SampleReason::MagneticCargo)
     });
-    let left_out = left_out.count();
+    let settled = past.pieces.iter().filter(|piece| piece.until >= entry.from);
+    let settled: u64 = settled.map(|piece| piece.left_out_laden).sum();
+    let left_out = settled + left_out.count() as u64;
     (left_out > 0).then(|| {
         format!(
             "{left_out} samples are left out of the model, because the logbook has magnetic cargo \

@@ -2,8 +2,8 @@
 //! epoch's model.
 
 use super::faults::{Faults, Trust};
+use super::kept::TrackedRow;
 use super::references::References;
-use super::voyage::TrackedRow;
 use crate::state_space::states::USUAL_H_NT;
 use binnacle_analysis::estimate::weight;
 use binnacle_analysis::fit::{Observation, REJECTED_BELOW};

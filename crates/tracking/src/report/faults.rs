@@ -68,6 +68,15 @@ impl Faults {
         }
     }
 
+    /// Tells of gyro and satellite compass whether a reading's heading by it is not trusted.
+    pub(super) fn dropped(&self, reading: &Reading) -> (bool, bool) {
+        let trust = self.trust(reading.sample().time);
+        (
+            reading.gyro.is_some() && !trust.gyro,
+            reading.sample().satellite.is_some() && !trust.satellite,
+        )
+    }
+
     /// Returns the reason for which a sample is spoilt, if it is.
     pub(super) fn reason(&self, reading: &Reading) -> Option<SampleReason> {
         let sample = reading.sample();

@@ -26,7 +26,7 @@ pub(super) fn notices(
     epochs: &[Epoch],
     contradicted: &[ContradictedEntry],
 ) -> Vec<String> {
-    let mut notices = cargo_entries::notices(readings, logbook, contradicted);
+    let mut notices = cargo_entries::notices(readings, &voyage.past, logbook, contradicted);
     if is_unwatched(voyage, readings, epochs) {
         notices.push(UNWATCHED.to_owned());
     }

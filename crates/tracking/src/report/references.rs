@@ -1,6 +1,7 @@
 //! Comparison of the references in each epoch of the logbook, and the deviation by them.
 
 use super::faults::Trust;
+use super::past::{is_offered, keep_some};
 use crate::state_space::scalar::GYRO_SHARE;
 use binnacle_analysis::fit::{HeadingReading, check_references, compare_references};
 use binnacle_analysis::readings::reading::{Reading, heading_reading};
@@ -20,33 +21,33 @@ pub(super) struct References {
 
 /// Comparison of the references in one epoch of the logbook.
 pub(super) struct ReferenceSpan {
+    /// Work that began it.
+    from: Option<Timestamp>,
     own: Range<usize>,
     /// None where a course over ground has nothing to be compared with.
     compared: Result<Option<ReferenceCheck>, FitError>,
 }
 
 impl References {
-    /// Compares the references of readings in order of time.
+    /// Compares the references of readings in order of time; `sampled` are some of those before.
     pub(super) fn compare(
         grade: ReferenceGrade,
+        sampled: &[Reading],
         readings: &[Reading],
         logbook: &[LogbookEntry],
         one_constant_sd_deg: f64,
     ) -> References {
         let works = works(logbook);
-        let place = |at: &Timestamp| readings.partition_point(|r| r.sample().time < *at);
-        let begins = std::iter::once(0).chain(works.iter().map(place));
-        let ends = works.iter().map(place).chain([readings.len()]);
-        let spans = begins.zip(ends).map(|(begin, end)| ReferenceSpan {
-            own: begin..end,
-            compared: match grade {
-                ReferenceGrade::Heading => {
-                    compare(&readings[begin..end], one_constant_sd_deg).map(Some)
-                }
-                ReferenceGrade::CourseOverGround => {
-                    check_references(&course_readings(&readings[begin..end])).map(|()| None)
-                }
-            },
+        let begins = std::iter::once(None).chain(works.iter().copied().map(Some));
+        let ends = works.iter().copied().map(Some).chain([None]);
+        let spans = begins.zip(ends).map(|(from, to)| {
+            let own = within(readings, from, to);
+            let sampled = &sampled[within(sampled, from, to)];
+            ReferenceSpan {
+                from,
+                compared: compare(grade, sampled, &readings[own.clone()], one_constant_sd_deg),
+                own,
+            }
         });
         let spans = spans.collect();
         References { grade, spans }
@@ -65,6 +66,13 @@ impl References {
                 }
             }
         }
+    }
+
+    /// Returns true if the references of the epoch of a time cannot be used.
+    pub(super) fn is_refused(&self, time: Timestamp) -> bool {
+        let begun = |span: &&ReferenceSpan| span.from.is_none_or(|from| from <= time);
+        let span = self.spans.iter().rev().find(begun);
+        span.is_some_and(|span| span.compared.is_err())
     }
 
     /// Returns the first refusal.
@@ -135,41 +143,67 @@ fn works(logbook: &[LogbookEntry]) -> Vec<Timestamp> {
     times
 }
 
-fn compare(readings: &[Reading], one_constant_sd_deg: f64) -> Result<ReferenceCheck, FitError> {
-    let has_reference = |r: &Reading| r.sample().gyro.or(r.sample().satellite).is_some();
-    if !readings.is_empty() && !readings.iter().any(has_reference) {
-        return Err(FitError::NoReference {
-            readings: readings.len() as u64,
-        });
-    }
-    let referred: Vec<HeadingReading> = readings.iter().filter_map(heading_reading).collect();
-    check_references(&referred)?;
-    compare_references(&referred, one_constant_sd_deg)
+/// Returns the places of readings from one time until another.
+fn within(readings: &[Reading], from: Option<Timestamp>, to: Option<Timestamp>) -> Range<usize> {
+    let place = |at: Timestamp| readings.partition_point(|r| r.sample().time < at);
+    from.map_or(0, place)..to.map_or(readings.len(), place)
 }
 
-/// Returns the readings of compass and course over ground where the course stands for a
-/// heading.
-fn course_readings(readings: &[Reading]) -> Vec<HeadingReading> {
-    let steady = readings.iter().filter(|r| r.diagnostic.reason.is_none());
-    let referred = steady.filter_map(|reading| {
-        let sample = reading.sample();
-        let (variation, earth) = reading.variation.zip(reading.earth)?;
-        Some(HeadingReading {
-            time: Some(sample.time),
-            position: Some(sample.position),
-            compass: sample.compass,
-            gyro: None,
-            satellite: None,
-            unnamed: TrueHeading::new(sample.cog?.degrees()),
-            variation,
-            h_nt: earth.h_nt,
-            z_nt: earth.z_nt,
-            // A course over ground has no speed error.
-            sog_kn: None,
-            windows: sample.windows,
-            spread_deg: sample.spread_deg,
-            weight: 1.0,
-        })
-    });
-    referred.collect()
+/// Compares the references of an epoch. What is in days of rows shows in the latest ones, and
+/// what takes many seas in a few of all.
+fn compare(
+    grade: ReferenceGrade,
+    sampled: &[Reading],
+    readings: &[Reading],
+    one_constant_sd_deg: f64,
+) -> Result<Option<ReferenceCheck>, FitError> {
+    let reading = match grade {
+        ReferenceGrade::Heading => heading_reading,
+        ReferenceGrade::CourseOverGround => course_reading,
+    };
+    let all = || sampled.iter().chain(readings);
+    let has_reference = |r: &Reading| r.sample().gyro.or(r.sample().satellite).is_some();
+    if grade.is_heading() && all().next().is_some() && !all().any(has_reference) {
+        return Err(FitError::NoReference {
+            readings: all().count() as u64,
+        });
+    }
+    check_references(&readings.iter().filter_map(reading).collect::<Vec<_>>())?;
+    if !sampled.is_empty() {
+        let mut some: Vec<&Reading> = all().collect();
+        keep_some(&mut some, |reading| reading.sample().time);
+        check_references(&some.into_iter().filter_map(reading).collect::<Vec<_>>())?;
+    }
+    if !grade.is_heading() {
+        return Ok(None);
+    }
+    let referred: Vec<HeadingReading> = all().filter_map(reading).collect();
+    compare_references(&referred, one_constant_sd_deg).map(Some)
+}
+
+/// Returns compass and course over ground where the course stands for a heading.
+fn course_reading(reading: &Reading) -> Option<HeadingReading> {
+    let reason = reading.diagnostic.reason;
+    let is_steady = is_offered(reason) || reason == Some(SampleReason::ReferenceFailed);
+    if !is_steady {
+        return None;
+    }
+    let sample = reading.sample();
+    let (variation, earth) = reading.variation.zip(reading.earth)?;
+    Some(HeadingReading {
+        time: Some(sample.time),
+        position: Some(sample.position),
+        compass: sample.compass,
+        gyro: None,
+        satellite: None,
+        unnamed: TrueHeading::new(sample.cog?.degrees()),
+        variation,
+        h_nt: earth.h_nt,
+        z_nt: earth.z_nt,
+        // A course over ground has no speed error.
+        sog_kn: None,
+        windows: sample.windows,
+        spread_deg: sample.spread_deg,
+        weight: 1.0,
+    })
 }

@@ -1,62 +1,51 @@
-//! Reading of a voyage: samples, logbook and azimuths in order of time.
+//! Reading of a voyage, part by part: samples, logbook and azimuths in order of time.
 
-use super::input::Input;
+use super::epochs::NEEDED_SAMPLES;
+use super::input::Part;
+use super::kept::{KeptReading, LoggedWork, TrackedRow};
 use super::marked_readings::MarkedReadings;
+use super::past::{Past, settled_readings};
 use super::predictions::WatchPredictions;
+use super::row_times::RowTime;
 use crate::state_space::row::Placed;
-use crate::state_space::ship_state::ShipState;
 use crate::weighing::tracker::Tracker;
 use binnacle_analysis::fleet_prior::ShipPrior;
-use binnacle_analysis::readings::reading::Reading;
+use binnacle_analysis::readings::reading::{Reading, readings};
 use binnacle_compass::azimuth::Azimuth;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::model::{Directions, ReferenceGrade};
 use binnacle_compass::result::SampleReason;
+use binnacle_compass::sample::Sample;
 use binnacle_compass::settings::AnalysisSettings;
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
-/// Least number of samples of an epoch of a ship that is not known.
-pub(super) const NEEDED_SAMPLES: usize = 12;
-
 /// Voyage so far: all that the reading of the next sample needs, and what was found.
 ///
-/// A plain value: kept and read again, it goes on as if it had never been put away.
+/// A plain value: kept and read again, it goes on as if it had never been put away. It grows with
+/// what happened to the ship, and not with her samples.
 #[derive(Serialize, Deserialize)]
 pub struct Voyage {
+    settings: AnalysisSettings,
+    pub(super) grade: ReferenceGrade,
+    /// Directions of the samples so far.
+    directions: Directions,
     pub(super) tracker: Tracker,
     /// Work on ship or compass by the logbook, in order of time.
     pub(super) works: Vec<LoggedWork>,
     /// Number of azimuths with no sample near them in time.
     pub(super) azimuths_unread: usize,
     pub(super) predictions: WatchPredictions,
-    /// Readings so far.
-    places: usize,
     /// Notes and azimuths later than the last reading, the first last.
     notes: Vec<Note>,
     azimuths: Vec<Azimuth>,
-}
-
-/// Row that was read.
-#[derive(Clone, Copy)]
-pub(crate) struct TrackedRow {
-    /// Place among the readings.
-    pub(super) place: usize,
-    pub(super) time: Timestamp,
-    /// Innovation, degrees, and its square in standard deviations.
-    pub(super) innovation_deg: f64,
-    pub(super) z_squared: f64,
-    /// True if the vessel was in port since the row before.
-    pub(super) after_port: bool,
-}
-
-/// Work on ship or compass by the logbook.
-#[derive(Serialize, Deserialize)]
-pub(crate) struct LoggedWork {
-    pub(super) at: Timestamp,
-    pub(super) kind: LogbookKind,
-    /// Ship until then; none before the first row.
-    pub(super) ship_before: Option<ShipState>,
+    /// End of the last part: earlier notes and azimuths are known.
+    known_until: Option<Timestamp>,
+    /// Readings that are not settled, and the rows that were read of them.
+    pub(super) kept: Vec<KeptReading>,
+    pub(super) rows: Vec<TrackedRow>,
+    pub(super) past: Past,
 }
 
 /// Note of the logbook at its time.
@@ -85,47 +74,91 @@ fn notes(logbook: &[LogbookEntry]) -> impl Iterator<Item = Note> {
 }
 
 impl Voyage {
-    /// Begins before the first sample, with the operator's settings and what is known of ships
-    /// like her.
-    pub fn begin(settings: &AnalysisSettings, prior: &ShipPrior) -> Voyage {
+    /// Begins before the first sample, with the operator's settings, what is known of ships like
+    /// her, and the grade that [`ReferenceGrade::of`] gives of all her samples.
+    pub fn begin(settings: &AnalysisSettings, prior: &ShipPrior, grade: ReferenceGrade) -> Voyage {
         Voyage {
+            settings: *settings,
+            grade,
+            directions: Directions::default(),
             tracker: Tracker::new(settings.reference_constant_sd_deg, prior),
             works: Vec::new(),
             azimuths_unread: 0,
             predictions: WatchPredictions::default(),
-            places: 0,
             notes: Vec::new(),
             azimuths: Vec::new(),
+            known_until: None,
+            kept: Vec::new(),
+            rows: Vec::new(),
+            past: Past::default(),
         }
     }
 
-    /// Reads the next part of the voyage: samples later than all before, and the logbook entries
-    /// and azimuths that came meanwhile. A sample counts as stuck or alongside by those of its
-    /// own part.
-    pub fn sail_on(&mut self, part: &Input<'_>) {
-        let _rows = self.read_part(part, &MarkedReadings::new(part).readings);
+    pub(super) fn reference_sd_deg(&self) -> f64 {
+        self.settings.reference_constant_sd_deg
+    }
+
+    /// Returns the grade of the ship by the samples so far and later ones. If it is not the one
+    /// that the voyage began with, another has to be begun.
+    pub fn grade_with(&self, later: &[Sample]) -> ReferenceGrade {
+        let mut directions = self.directions;
+        directions.note(later);
+        directions.grade()
+    }
+
+    /// Returns the grade that it began with.
+    pub fn grade(&self) -> ReferenceGrade {
+        self.grade
     }
 
     /// Reads the readings of a part, and what of logbook and azimuths is earlier than the last.
-    /// Returns the rows that were read, in order.
-    pub(super) fn read_part(&mut self, part: &Input<'_>, readings: &[Reading]) -> Vec<TrackedRow> {
-        let mut rows = Vec::new();
-        self.notes.extend(notes(part.logbook));
+    /// Returns the readings that are not settled.
+    pub(super) fn read_part(&mut self, part: &Part<'_>) -> MarkedReadings {
+        let known_until = self.known_until;
+        let is_new = |time: Timestamp| known_until.is_none_or(|until| time >= until);
+        let new = notes(&part.logbook).filter(|note| is_new(note.at));
+        self.notes.extend(new);
         self.notes
             .sort_by(|a, b| b.partial_cmp(a).unwrap_or(Ordering::Equal));
-        self.azimuths.extend_from_slice(part.azimuths);
+        let azimuths = part.azimuths.iter().filter(|a| is_new(a.time()));
+        self.azimuths.extend(azimuths.cloned());
         self.azimuths.sort_by(|a, b| in_order(b, a));
-        for reading in readings {
+        self.known_until = part.end;
+        self.directions.note(part.samples);
+
+        let mut all = self.kept_readings();
+        let begin = all.len();
+        all.extend(readings(
+            part.samples,
+            &part.logbook,
+            &self.settings,
+            self.grade,
+        ));
+        self.kept.extend(all[begin..].iter().map(KeptReading::of));
+        let sampled = settled_readings(&self.past.sampled, &self.settings, self.grade);
+        let marked = MarkedReadings::new(all, self.grade, sampled, &part.logbook, &self.settings);
+        for (place, reading) in marked.readings.iter().enumerate().skip(begin) {
             let time = reading.sample().time;
             while let Some(note) = self.notes.pop_if(|note| note.at <= time) {
                 self.note(note);
             }
-            rows.extend(self.read(reading));
+            let row = self.read(place, reading);
+            self.rows.extend(row);
             while let Some(azimuth) = self.azimuths.pop_if(|azimuth| azimuth.time() <= time) {
                 self.read_azimuth(&azimuth);
             }
         }
-        rows
+        marked
+    }
+
+    /// Returns the readings that are kept, without marks.
+    fn kept_readings(&self) -> Vec<Reading> {
+        let samples: Vec<Sample> = self.kept.iter().map(|kept| kept.sample).collect();
+        let mut readings = readings(&samples, &[], &self.settings, self.grade);
+        for (reading, kept) in readings.iter_mut().zip(&self.kept) {
+            reading.diagnostic.reason = kept.reason;
+        }
+        readings
     }
 
     /// Ends the voyage with what is later than the last reading.
@@ -142,6 +175,26 @@ impl Voyage {
             self.read_azimuth(azimuth);
         }
         self.predictions.interrupt();
+    }
+
+    /// Returns the times of the rows that were read of some readings, and of earlier ones next to
+    /// a date.
+    pub(super) fn row_times(&self, readings: &[Reading]) -> Vec<RowTime> {
+        let of_row = |place: usize, after_port: bool| {
+            let reading = &readings[place];
+            Some(RowTime {
+                time: reading.sample().time,
+                after_port,
+                earth: reading.earth?,
+            })
+        };
+        let rows = self.rows.iter();
+        let rows = rows.filter_map(|row| of_row(row.place, row.after_port));
+        self.past.rows.iter().copied().chain(rows).collect()
+    }
+
+    pub(super) fn prior(&self) -> &ShipPrior {
+        self.tracker.prior()
     }
 
     fn note(&mut self, note: Note) {
@@ -164,9 +217,7 @@ impl Voyage {
         self.tracker.note(note.kind);
     }
 
-    fn read(&mut self, reading: &Reading) -> Option<TrackedRow> {
-        let place = self.places;
-        self.places += 1;
+    fn read(&mut self, place: usize, reading: &Reading) -> Option<TrackedRow> {
         let excluded = reading.diagnostic.reason;
         if excluded.is_some_and(|reason| reason != SampleReason::MagneticCargo) {
             return None;
@@ -178,7 +229,7 @@ impl Voyage {
             variation,
             earth,
         };
-        let is_predicted = self.tracker.count >= NEEDED_SAMPLES;
+        let is_predicted = self.tracker.count as u64 >= NEEDED_SAMPLES;
         if is_predicted {
             self.predictions.before(placed.sample, &self.tracker);
         }
@@ -188,7 +239,6 @@ impl Voyage {
         }
         Some(TrackedRow {
             place,
-            time: reading.sample().time,
             innovation_deg: tracked.read.deviation.value,
             z_squared: tracked.read.deviation.z_squared(),
             after_port: tracked.row.after_port,

@@ -26,7 +26,7 @@ pub(crate) mod vector {
     }
 }
 
-/// Matrix of the states, row by row.
+/// Symmetric matrix of the states: its upper half, row by row.
 pub(crate) mod matrix {
     use super::{Deserialize, Deserializer, Error, STATES, Serialize, Serializer};
 
@@ -34,19 +34,26 @@ pub(crate) mod matrix {
         rows: &[[f64; STATES]; STATES],
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
-        rows.as_flattened().serialize(serializer)
+        let upper = rows.iter().enumerate().flat_map(|(i, row)| &row[i..]);
+        upper.copied().collect::<Vec<f64>>().serialize(serializer)
     }
 
     pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Box<[[f64; STATES]; STATES]>, D::Error> {
         let values = Vec::<f64>::deserialize(deserializer)?;
-        let mut rows = Box::new([[0.0; STATES]; STATES]);
-        if values.len() != STATES * STATES {
-            let expected = &"a row of numbers for each state";
+        if values.len() != STATES * (STATES + 1) / 2 {
+            let expected = &"half a row of numbers for each state";
             return Err(D::Error::invalid_length(values.len(), expected));
         }
-        rows.as_flattened_mut().copy_from_slice(&values);
+        let mut rows = Box::new([[0.0; STATES]; STATES]);
+        let mut values = values.into_iter();
+        for i in 0..STATES {
+            for (j, value) in (i..STATES).zip(&mut values) {
+                rows[i][j] = value;
+                rows[j][i] = value;
+            }
+        }
         Ok(rows)
     }
 }

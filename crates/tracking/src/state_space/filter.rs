@@ -53,6 +53,15 @@ impl Filter {
         }
     }
 
+    /// Makes the covariance symmetric to the last bit, which arithmetic does not keep it.
+    pub(crate) fn make_symmetric(&mut self) {
+        for i in 0..STATES {
+            for j in 0..i {
+                self.covariance[i][j] = self.covariance[j][i];
+            }
+        }
+    }
+
     /// Moves on in time.
     pub(crate) fn advance(&mut self, t: &Transition) {
         for (x, keep) in self.mean.iter_mut().zip(&t.keep) {

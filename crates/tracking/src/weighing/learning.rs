@@ -45,6 +45,13 @@ impl Learning {
         &self.levels
     }
 
+    /// Makes the covariances beside the lead's symmetric to the last bit.
+    pub(crate) fn make_symmetric(&mut self) {
+        for hypothesis in &mut self.nudged {
+            hypothesis.filter.make_symmetric();
+        }
+    }
+
     /// Begins anew from another filter.
     pub(crate) fn restart(&mut self, lead: &Hypothesis) {
         self.nudged = vec![lead.clone(); LEVELS];

@@ -270,6 +270,21 @@ impl Tracker {
         weights.fold(f64::NEG_INFINITY, f64::max)
     }
 
+    /// Makes all covariances symmetric to the last bit, as they are kept.
+    pub(crate) fn make_symmetric(&mut self) {
+        let checkpoints = self.checkpoints.iter_mut();
+        let plausible = checkpoints.flat_map(|checkpoint| &mut checkpoint.plausible);
+        for hypothesis in self.bank.iter_mut().chain(plausible) {
+            hypothesis.filter.make_symmetric();
+        }
+        self.learning.make_symmetric();
+    }
+
+    /// Returns what is known of ships like her.
+    pub(crate) fn prior(&self) -> &ShipPrior {
+        &self.prior
+    }
+
     /// Returns the levels learnt.
     pub(crate) fn levels(&self) -> &Levels {
         self.learning.levels()

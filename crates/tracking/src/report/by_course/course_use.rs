@@ -4,15 +4,18 @@ use binnacle_analysis::readings::reading::Reading;
 use binnacle_analysis::readings::steady_course::{LEAST_SOG_KN, mark_unsteady_courses};
 use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::result::{FitError, SampleReason};
+use serde::{Deserialize, Serialize};
 
 /// Numbers of samples by the use of their course over ground.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CourseUse {
     readings: u64,
     too_slow: u64,
     turning: u64,
-    /// Mean reciprocal of the speed over ground of the rows that are used, hours a mile.
-    pub(super) hours_per_nm: f64,
+    /// Readings that are used, and the sum of the reciprocals of their speed over ground, hours a
+    /// mile.
+    used: u64,
+    hours: f64,
 }
 
 impl CourseUse {
@@ -23,18 +26,42 @@ impl CourseUse {
             return None;
         }
         mark_unsteady_courses(readings);
-        let of = |reason: SampleReason| {
-            let same = readings
-                .iter()
-                .filter(|r| r.diagnostic.reason == Some(reason));
-            same.count() as u64
-        };
-        Some(CourseUse {
-            readings: readings.len() as u64,
-            too_slow: of(SampleReason::TooSlowForCourse),
-            turning: of(SampleReason::TurningCourse),
-            hours_per_nm: hours_per_nm(readings),
-        })
+        Some(CourseUse::of(readings))
+    }
+
+    /// Counts marked readings.
+    pub(crate) fn of(readings: &[Reading]) -> CourseUse {
+        let mut counted = CourseUse::default();
+        for reading in readings {
+            counted.readings += 1;
+            match reading.diagnostic.reason {
+                Some(SampleReason::TooSlowForCourse) => counted.too_slow += 1,
+                Some(SampleReason::TurningCourse) => counted.turning += 1,
+                Some(_) => {}
+                None => {
+                    if let Some(sog_kn) = reading.sample().sog_kn {
+                        counted.used += 1;
+                        counted.hours += 1.0 / sog_kn.max(LEAST_SOG_KN);
+                    }
+                }
+            }
+        }
+        counted
+    }
+
+    /// Adds later readings.
+    pub(crate) fn append(&mut self, later: &CourseUse) {
+        self.readings += later.readings;
+        self.too_slow += later.too_slow;
+        self.turning += later.turning;
+        self.used += later.used;
+        self.hours += later.hours;
+    }
+
+    /// Returns the mean reciprocal of the speed over ground of the readings that are used, hours
+    /// a mile.
+    pub(super) fn hours_per_nm(self) -> f64 {
+        self.hours / self.used.max(1) as f64
     }
 
     /// Returns the refusal of a model from too few readings.
@@ -59,12 +86,4 @@ impl CourseUse {
             self.readings, self.too_slow, self.turning
         )
     }
-}
-
-fn hours_per_nm(readings: &[Reading]) -> f64 {
-    let used = readings.iter().filter(|r| r.diagnostic.reason.is_none());
-    let hours: Vec<f64> = used
-        .filter_map(|r| Some(1.0 / r.sample().sog_kn?.max(LEAST_SOG_KN)))
-        .collect();
-    hours.iter().sum::<f64>() / hours.len().max(1) as f64
 }

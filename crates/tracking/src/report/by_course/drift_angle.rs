@@ -16,7 +16,7 @@ impl CourseUse {
     /// as deviation by permanent magnetism, and nothing tells the two apart.
     pub(crate) fn widen(self, ship: &ShipState, h_nt: f64) -> ShipState {
         let mut ship = ship.clone();
-        let variance_nt2 = (LASTING_SET_KN * self.hours_per_nm * h_nt).powi(2);
+        let variance_nt2 = (LASTING_SET_KN * self.hours_per_nm() * h_nt).powi(2);
         for permanent in [BX, BY] {
             ship.covariance[permanent][permanent] += variance_nt2;
         }
@@ -26,7 +26,7 @@ impl CourseUse {
     /// Returns the standard deviation of the drift angle about its constant, degrees.
     pub(crate) fn drift_angle_deg(self, levels: &Levels) -> f64 {
         let [current, leeway] = [Level::Current, Level::Leeway].map(|level| levels.at(level));
-        (current.hypot(leeway).hypot(STEADY_KN) * self.hours_per_nm).to_degrees()
+        (current.hypot(leeway).hypot(STEADY_KN) * self.hours_per_nm()).to_degrees()
     }
 }
 

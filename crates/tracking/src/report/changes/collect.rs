@@ -1,6 +1,7 @@
 //! Collection of all changes.
 
 use super::detected::change;
+use super::disturbed::record_disturbed;
 use super::evidence::Facts;
 use super::logged_work::{has_both_sides, logged_change};
 use super::size::{Disturbance, Sides, disturbance};
@@ -9,15 +10,15 @@ use crate::hypotheses::kinds::Kind;
 use crate::report::causes::{likeliest_cause, reported};
 use crate::report::epochs::{Boundaries, Span, begins_an_epoch};
 use crate::report::faults::end;
+use crate::report::kept::LoggedWork;
+use crate::report::past::Past;
 use crate::report::row_times::RowTimes;
-use crate::report::voyage::LoggedWork;
 use crate::state_space::ship_state::ShipState;
 use crate::weighing::records::{Class, Detected};
 use binnacle_analysis::readings::logbook_rules::reported_cause;
 use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Cause, Change, Epoch};
-use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
 
 /// Everything that changes are made of.
@@ -28,25 +29,37 @@ pub(crate) struct Findings<'a> {
     pub(crate) boundaries: &'a Boundaries<'a>,
     pub(crate) spans: &'a [Span<'a>],
     pub(crate) epochs: &'a [Epoch],
+    /// Readings that are not settled.
     pub(crate) readings: &'a [Reading],
+    pub(crate) past: &'a Past,
     pub(crate) times: &'a RowTimes<'a>,
     pub(crate) logbook: &'a [LogbookEntry],
     /// Ship after the last row.
     pub(crate) current: Option<&'a ShipState>,
 }
 
-/// Returns the changes by the samples and by the logbook, in order of time.
-pub(crate) fn changes(findings: &Findings<'_>) -> Vec<Change> {
+/// Changes by the samples and by the logbook.
+pub(crate) struct Changes {
+    /// Changes by detected events, each with the event's place.
+    pub(crate) events: Vec<(usize, Change)>,
+    /// Suspected changes, and those by work in the logbook.
+    pub(crate) others: Vec<Change>,
+}
+
+/// Returns the changes by the samples and by the logbook.
+pub(crate) fn changes(findings: &Findings<'_>) -> Changes {
     let detected = findings.detected.iter().enumerate();
     let detected = detected.filter(|(place, _)| !findings.boundaries.logged.contains(place));
-    let mut changes: Vec<Change> = detected
-        .map(|(place, detected)| findings.change(detected, Some(place)))
-        .collect();
+    let change = |(place, detected)| match findings.past.change(detected) {
+        Some(settled) => (place, settled.clone()),
+        None => (place, findings.change(detected, Some(place))),
+    };
     let suspected = findings.suspected.iter();
-    changes.extend(suspected.map(|suspected| findings.change(suspected, None)));
-    changes.extend(findings.logged_changes());
-    changes.sort_by_key(|change| (change.from, change.detected_at));
-    changes
+    let suspected = suspected.map(|suspected| findings.change(suspected, None));
+    Changes {
+        events: detected.map(change).collect(),
+        others: suspected.chain(findings.logged_changes()).collect(),
+    }
 }
 
 impl Findings<'_> {
@@ -63,20 +76,27 @@ impl Findings<'_> {
             let sides = (fitted(place - 1) && fitted(place))
                 .then(|| self.sides(place))
                 .flatten();
-            Some(logged_change(&self.works[work], at, sides, self.earth(at)))
+            Some(logged_change(
+                &self.works[work],
+                at,
+                sides,
+                self.times.earth(at),
+            ))
         })
     }
 
     /// Returns the change of a detected event with its place, or of a suspected one.
     fn change(&self, detected: &Detected, place: Option<usize>) -> Change {
         let sides = self.sides_of(detected, place);
-        let earth = self.earth(detected.at);
+        let earth = self.times.earth(detected.at);
         let facts = self.facts(
             detected,
             place.is_some(),
             sides.zip(earth).map(|(s, e)| s.worst_change_deg(e)),
         );
-        change(detected, &facts, sides, earth, self.times, self.logbook)
+        let mut change = change(detected, &facts, sides, earth, self.times, self.logbook);
+        record_disturbed(&mut change, self.readings, self.epochs);
+        change
     }
 
     /// Returns the ship before an event and as it is known later; none of an event that is not
@@ -105,12 +125,6 @@ impl Findings<'_> {
         let before = self.spans[span.checked_sub(1)?].ship?;
         let after = self.spans[span].ship?;
         Some(Sides { before, after })
-    }
-
-    /// Returns the field at the last reading until a time.
-    fn earth(&self, until: Timestamp) -> Option<EarthField> {
-        let mut before = self.readings.iter().rev();
-        before.find(|r| r.sample().time <= until)?.earth
     }
 
     fn facts(&self, detected: &Detected, is_certain: bool, worst_deg: Option<f64>) -> Facts {
@@ -156,7 +170,7 @@ impl Findings<'_> {
     /// Returns true if no reading during an event has both references.
     fn has_one_reference(&self, from: Timestamp, end: Option<Timestamp>) -> bool {
         let has_both = |r: &Reading| r.gyro.is_some() && r.sample().satellite.is_some();
-        !self.during(from, end).any(has_both)
+        !self.past.has_both(from, end) && !self.during(from, end).any(has_both)
     }
 
     /// Returns the number of sudden changes of the ship within a day of one, itself included.

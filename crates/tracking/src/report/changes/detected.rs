@@ -48,6 +48,8 @@ pub(super) fn change(
         deviation_change_deg,
         step: sides.filter(|_| !is_alignment).map(Sides::step),
         ended: ended(detected, facts, times, from),
+        position: None,
+        disturbed_deg: None,
     }
 }
 

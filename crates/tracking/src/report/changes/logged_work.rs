@@ -3,7 +3,7 @@
 use super::size::Sides;
 use crate::constants::HOUR_S;
 use crate::report::epochs::Span;
-use crate::report::voyage::LoggedWork;
+use crate::report::kept::LoggedWork;
 use binnacle_compass::result::{Cause, CauseProbability, Change};
 use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
@@ -34,6 +34,8 @@ pub(super) fn logged_change(
         from_latest: at,
         detected_at: at,
         confirmed: true,
+        position: None,
+        disturbed_deg: None,
         withdrawn: false,
         cause: Cause::AdjustmentOrRepair,
         causes: vec![CauseProbability {
@@ -49,6 +51,6 @@ pub(super) fn logged_change(
 
 /// Returns true if there are readings on both sides of a boundary.
 pub(super) fn has_both_sides(spans: &[Span<'_>], place: usize) -> bool {
-    let before = place.checked_sub(1).map(|before| &spans[before].own);
-    before.is_some_and(|own| !own.is_empty()) && !spans[place].own.is_empty()
+    let before = place.checked_sub(1).map(|before| &spans[before]);
+    before.is_some_and(|before| !before.is_empty()) && !spans[place].is_empty()
 }

@@ -2,8 +2,10 @@
 
 mod collect;
 mod detected;
+mod disturbed;
 mod evidence;
 mod logged_work;
 mod size;
 
-pub(super) use collect::{Findings, changes};
+pub(super) use collect::{Changes, Findings, changes};
+pub(super) use disturbed::record_disturbed;

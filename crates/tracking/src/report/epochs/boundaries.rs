@@ -2,8 +2,8 @@
 
 use crate::constants::DAY_S;
 use crate::report::causes::likeliest_cause;
+use crate::report::kept::LoggedWork;
 use crate::report::row_times::RowTimes;
-use crate::report::voyage::LoggedWork;
 use crate::state_space::ship_state::ShipState;
 use crate::weighing::records::{Class, Detected};
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
@@ -89,6 +89,25 @@ impl<'a> Boundaries<'a> {
         boundaries.list.sort_by_key(|boundary| boundary.at);
         boundaries.merge(times);
         boundaries
+    }
+
+    /// Returns the dates of boundaries and of all that was detected: those of which a report may
+    /// ask for the rows next to them.
+    pub(crate) fn dates(&self, works: &[LoggedWork], detected: &[Detected]) -> Vec<Timestamp> {
+        let boundaries = self.list.iter().map(|boundary| boundary.at);
+        let works = works.iter().map(|work| work.at);
+        let mut dates: Vec<Timestamp> = boundaries.chain(works).collect();
+        for Detected {
+            event,
+            posterior,
+            at,
+            ..
+        } in detected
+        {
+            dates.extend([event.from, *at, posterior.earliest, posterior.latest]);
+            dates.extend(event.until.into_iter().chain(posterior.end));
+        }
+        dates
     }
 
     /// Dates work of about the time of a change by that change. Returns false if the logbook has

@@ -5,24 +5,26 @@ use super::spans::Span;
 use crate::report::by_course::CourseUse;
 use crate::report::diagnostics::{observation, record_outcome};
 use crate::report::faults::Faults;
+use crate::report::kept::TrackedRow;
+use crate::report::past::{Piece, Tally, is_offered, keep_some, stronger};
 use crate::report::predictions::{WatchPredictions, widened};
 use crate::report::references::References;
-use crate::report::voyage::{NEEDED_SAMPLES, TrackedRow};
 use crate::state_space::ship_state::ShipState;
 use crate::weighing::records::Detected;
-use binnacle_analysis::fit::{
-    Observation, check_headings, check_residuals, check_used, long_gap, possible_mistake,
-};
+use binnacle_analysis::fit::{Observation, check_residuals, check_used, possible_mistake};
 use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Caution, Model, ReferenceGrade};
 use binnacle_compass::result::{Epoch, FitError, NoiseLevels, ReferenceCheck, SampleReason};
-use binnacle_compass::ship::{EarthField, PARAMETERS, WEAKEST_H_NT};
+use binnacle_compass::ship::{PARAMETERS, WEAKEST_H_NT};
+use std::ops::Range;
 
+/// Least number of samples of an epoch of a ship that is not known.
+pub(crate) const NEEDED_SAMPLES: u64 = 12;
 /// Least number of samples of an epoch of a known ship after a change.
-const NEEDED_SAMPLES_KNOWN_SHIP: usize = 6;
+const NEEDED_SAMPLES_KNOWN_SHIP: u64 = 6;
 
 /// Input of the fits that all epochs share.
 pub(crate) struct Fitting<'a> {
@@ -37,6 +39,10 @@ pub(crate) struct Fitting<'a> {
     pub(crate) noise: NoiseLevels,
     /// Standard deviation of one reference's constant error, degrees.
     pub(crate) one_reference_sd_deg: f64,
+    /// Epochs that are over and settled, the first first.
+    pub(crate) settled: &'a [Epoch],
+    /// Some of the settled readings.
+    pub(crate) sampled: &'a [Reading],
 }
 
 /// Fits all epochs in order of time, and records the outcome in each reading.
@@ -46,17 +52,42 @@ pub(crate) fn fit_epochs(
     fitting: &Fitting<'_>,
 ) -> Vec<Epoch> {
     let mut epochs: Vec<Epoch> = Vec::with_capacity(spans.len());
-    for place in 0..spans.len() {
+    for (place, span) in spans.iter().enumerate() {
+        if let Some(settled) = fitting.settled(place, span) {
+            epochs.push(settled.clone());
+            continue;
+        }
         let is_known = spans[place].begun_by_change.is_some()
             && spans[place].begun_by.is_none()
             && epochs.iter().any(|epoch| epoch.model.is_some());
         let epoch = fitting.fit(spans, place, is_known, readings);
-        epochs.push(epoch);
+        epochs.push(with_left_out(epoch, span, readings));
     }
     epochs
 }
 
+/// Returns an epoch with the numbers of readings that are left out.
+fn with_left_out(epoch: Epoch, span: &Span<'_>, readings: &[Reading]) -> Epoch {
+    let own = &readings[span.own.clone()];
+    let count = |reason: SampleReason, past: fn(&Piece) -> u64| {
+        let found = own.iter().filter(|r| r.diagnostic.reason == Some(reason));
+        span.past.iter().map(past).sum::<u64>() + found.count() as u64
+    };
+    Epoch {
+        left_out_laden: count(SampleReason::MagneticCargo, |piece| piece.left_out_laden),
+        left_out_alongside: count(SampleReason::Berth, |piece| piece.left_out_alongside),
+        ..epoch
+    }
+}
+
 impl Fitting<'_> {
+    /// Returns the epoch if it is settled.
+    fn settled(&self, place: usize, span: &Span<'_>) -> Option<&Epoch> {
+        let known = self.settled.get(place)?;
+        let is_same = (known.from, known.to) == (span.from, span.to);
+        (is_same && span.own.is_empty()).then_some(known)
+    }
+
     fn fit(
         &self,
         spans: &[Span<'_>],
@@ -72,15 +103,19 @@ impl Fitting<'_> {
             begun_by: span.begun_by,
             begun_by_change: span.begun_by_change,
             resumes: span.resumes,
-            data_from: own.first().map(|r| r.sample().time),
-            data_until: own.last().map(|r| r.sample().time),
+            data_from: (span.past.first().map(|piece| piece.from))
+                .or(own.first().map(|r| r.sample().time)),
+            data_until: (own.last().map(|r| r.sample().time))
+                .or(span.past.last().map(|piece| piece.until)),
+            left_out_laden: 0,
+            left_out_alongside: 0,
             references: None,
             noise: None,
             model: None,
             refusal: None,
         };
         let check = match self.references.at(span.own.start) {
-            Ok(check) => check.map(|check| self.count_dropped(check, own)),
+            Ok(check) => check.map(|check| self.count_dropped(check, span.past, own)),
             Err(refusal) => {
                 epoch.refusal = Some(refusal);
                 return epoch;
@@ -101,12 +136,20 @@ impl Fitting<'_> {
     }
 
     /// Counts the readings whose reference was at fault.
-    fn count_dropped(&self, mut check: ReferenceCheck, own: &[Reading]) -> ReferenceCheck {
+    fn count_dropped(
+        &self,
+        mut check: ReferenceCheck,
+        past: &[Piece],
+        own: &[Reading],
+    ) -> ReferenceCheck {
+        for piece in past {
+            check.gyro_dropped += piece.gyro_dropped;
+            check.satellite_dropped += piece.satellite_dropped;
+        }
         for reading in own {
-            let trust = self.faults.trust(reading.sample().time);
-            check.gyro_dropped += u64::from(reading.gyro.is_some() && !trust.gyro);
-            check.satellite_dropped +=
-                u64::from(reading.sample().satellite.is_some() && !trust.satellite);
+            let (gyro, satellite) = self.faults.dropped(reading);
+            check.gyro_dropped += u64::from(gyro);
+            check.satellite_dropped += u64::from(satellite);
         }
         check
     }
@@ -120,15 +163,6 @@ impl Fitting<'_> {
             .collect()
     }
 
-    /// Returns the number of rows of an epoch that were read as samples of the vessel: what the
-    /// analysis itself declares a fault of the reference is among them.
-    fn found(&self, span: &Span<'_>, readings: &[Reading]) -> u64 {
-        let rows = self.rows.iter().filter(|row| span.own.contains(&row.place));
-        let laden = Some(SampleReason::MagneticCargo);
-        let read = rows.filter(|row| readings[row.place].diagnostic.reason != laden);
-        read.count() as u64
-    }
-
     fn model(
         &self,
         spans: &[Span<'_>],
@@ -139,25 +173,18 @@ impl Fitting<'_> {
         let span = &spans[place];
         let usable = self.usable(span, readings);
         let earlier = earlier(spans, place);
-        let used_before = earlier
-            .iter()
-            .flat_map(|span| &readings[span.own.clone()])
-            .filter(|reading| reading.diagnostic.used);
-        let mut observations: Vec<Observation> = used_before.filter_map(observation).collect();
-        let before = observations.len();
-        let own = usable.iter();
-        observations.extend(own.filter_map(|row| observation(&readings[row.place])));
-        check_field(&readings[span.own.clone()], &observations)?;
+        let observations = offered(span, &earlier, &usable, readings);
+        check_field(span, readings, observations.count)?;
         let needed = if is_known {
             NEEDED_SAMPLES_KNOWN_SHIP
         } else {
             NEEDED_SAMPLES
         };
-        let Some(ship) = span.ship.filter(|_| observations.len() >= needed) else {
-            return Err(self.too_few(observations.len() as u64, needed as u64));
+        let Some(ship) = span.ship.filter(|_| observations.count >= needed) else {
+            return Err(self.too_few(observations.count, needed));
         };
         if !is_known {
-            check_headings(&observations)?;
+            observations.headings.check()?;
         }
         let ship = &self.widened_by_set(ship, &observations);
         let mut model = self.of_ship(ship);
@@ -172,20 +199,47 @@ impl Fitting<'_> {
         }
         // By the ship of each time: the latest would not explain a year of small changes.
         let residuals = usable.iter().map(|row| row.innovation_deg);
-        let used = usable.iter();
-        let used = used.filter(|row| readings[row.place].diagnostic.used);
-        let found = self.found(span, readings);
+        let found = span.past.iter().map(|piece| piece.judged).sum::<u64>()
+            + judged(self.rows, &span.own, readings);
         // A few rows after a change may all have been read before it was known.
-        let caution = if usable.len() < NEEDED_SAMPLES {
+        let caution = if (usable.len() as u64) < NEEDED_SAMPLES {
             None
         } else {
             let caution = check_residuals(residuals, &self.noise)?;
-            check_used(used.count() as u64, found)?;
+            check_used(used_of(span, readings), found)?;
             caution
         };
-        self.complete(&mut model, &observations, ship, caution);
-        count(&mut model, &readings[span.own.clone()], &earlier, before);
+        let rows = self.of_all_seas(span, &earlier, &usable, readings);
+        self.complete(&mut model, &observations, &rows, ship, caution);
+        count(&mut model, span, &earlier, readings);
         Ok(model)
+    }
+
+    /// Returns the observations that an epoch's model has, and of the settled ones some.
+    fn of_all_seas(
+        &self,
+        span: &Span<'_>,
+        earlier: &[&Span<'_>],
+        usable: &[TrackedRow],
+        readings: &[Reading],
+    ) -> Vec<Observation> {
+        let is_within = |reading: &&Reading| {
+            let time = reading.sample().time;
+            let mut spans = earlier.iter().copied().chain([span]);
+            is_offered(reading.diagnostic.reason)
+                && spans.any(|span| {
+                    span.from.is_none_or(|from| from <= time) && span.to.is_none_or(|to| time < to)
+                })
+        };
+        let mut rows: Vec<&Reading> = self.sampled.iter().filter(is_within).collect();
+        let is_whole = rows.is_empty();
+        let earlier = earlier.iter().flat_map(|span| &readings[span.own.clone()]);
+        rows.extend(earlier.filter(|reading| reading.diagnostic.used));
+        rows.extend(usable.iter().map(|row| &readings[row.place]));
+        if !is_whole {
+            keep_some(&mut rows, |reading| reading.sample().time);
+        }
+        rows.into_iter().filter_map(observation).collect()
     }
 
     fn too_few(&self, found: u64, needed: u64) -> FitError {
@@ -196,8 +250,8 @@ impl Fitting<'_> {
     }
 
     /// Returns the ship; by course over ground, with the uncertainty of a lasting set.
-    fn widened_by_set(&self, ship: &ShipState, observations: &[Observation]) -> ShipState {
-        let h_nt = observations.last().map_or(0.0, |o| o.h_nt);
+    fn widened_by_set(&self, ship: &ShipState, observations: &Tally) -> ShipState {
+        let h_nt = observations.last.map_or(0.0, |earth| earth.h_nt);
         let widened = self.course.map(|course| course.widen(ship, h_nt));
         widened.unwrap_or_else(|| ship.clone())
     }
@@ -225,35 +279,31 @@ impl Fitting<'_> {
     fn complete(
         &self,
         model: &mut Model,
-        observations: &[Observation],
+        observations: &Tally,
+        rows: &[Observation],
         ship: &ShipState,
         caution: Option<Caution>,
     ) {
-        let (Some(last), Some(weakest_h_nt)) = (
-            observations.last(),
-            observations.iter().map(|o| o.h_nt).reduce(f64::min),
-        ) else {
+        let (Some(earth), Some(weakest_h_nt)) = (observations.last, observations.weakest_h_nt)
+        else {
             return;
         };
         let known = Knowledge {
             ship,
             prior: self.prior,
-            earth: EarthField {
-                h_nt: last.h_nt,
-                z_nt: last.z_nt,
-            },
+            earth,
             weakest_h_nt,
-            samples: observations.len(),
+            samples: observations.count,
             row_variance: self.noise.row_variance(),
             reference_sd_deg: self.reference_sd_deg(observations),
         };
         let (mut quality, identifiable) = quality(model, &known);
         quality.cautions.extend(caution);
-        quality.cautions.extend(long_gap(observations));
+        quality.cautions.extend(observations.gaps.caution());
         // An azimuth shows whose error the constant is, and a course over ground drifts.
         let is_open = self.course.is_none() && !identifiable.constant_deg;
-        let possible = is_open.then(|| possible_mistake(observations)).flatten();
-        if let Some((possible, covariance)) = possible.zip(model.covariance.as_mut()) {
+        let possible = is_open.then(|| possible_mistake(rows, observations.count));
+        if let Some((possible, covariance)) = possible.flatten().zip(model.covariance.as_mut()) {
             covariance[PARAMETERS][PARAMETERS] += possible.variance_deg2;
             quality.cautions.push(possible.caution);
         }
@@ -263,13 +313,8 @@ impl Fitting<'_> {
 
     /// Returns the standard deviation of the constant error of one reference, or of the mean of
     /// two.
-    fn reference_sd_deg(&self, observations: &[Observation]) -> f64 {
-        let has_both = |o: &Observation| o.gyro_less_satellite_deg.is_some();
-        let references: f64 = if observations.iter().any(has_both) {
-            2.0
-        } else {
-            1.0
-        };
+    fn reference_sd_deg(&self, observations: &Tally) -> f64 {
+        let references: f64 = if observations.has_both { 2.0 } else { 1.0 };
         self.one_reference_sd_deg / references.sqrt()
     }
 
@@ -299,26 +344,86 @@ fn earlier<'a>(spans: &'a [Span<'a>], place: usize) -> Vec<&'a Span<'a>> {
     earlier
 }
 
-/// Counts the readings of the epoch, and the residuals of those that were used.
-fn count(model: &mut Model, own: &[Reading], earlier: &[&Span<'_>], used_before: usize) {
-    let used = || own.iter().filter(|reading| reading.diagnostic.used);
-    let squares = used().filter_map(|reading| reading.diagnostic.residual_deg);
-    let squares: f64 = squares.map(|residual| residual * residual).sum();
-    let own_used = used().count();
-    let offered = own.len() + earlier.iter().map(|span| span.own.len()).sum::<usize>();
+/// Returns what the readings of an epoch say for its model, and those of earlier epochs with the
+/// same magnetism.
+fn offered(
+    span: &Span<'_>,
+    earlier: &[&Span<'_>],
+    usable: &[TrackedRow],
+    readings: &[Reading],
+) -> Tally {
+    let mut offered = Tally::default();
+    let mut add = |past: &[Piece], readings: &mut dyn Iterator<Item = &Reading>| {
+        for piece in past {
+            offered.append(&piece.offered);
+        }
+        let mut own = Tally::default();
+        for observation in readings.filter_map(observation) {
+            own.add(&observation);
+        }
+        offered.append(&own);
+    };
+    for span in earlier {
+        let own = readings[span.own.clone()].iter();
+        add(span.past, &mut own.filter(|r| r.diagnostic.used));
+    }
+    add(
+        span.past,
+        &mut usable.iter().map(|row| &readings[row.place]),
+    );
+    offered
+}
+
+/// Returns the number of rows that were read as samples of the vessel, and that a model judges:
+/// what the analysis itself declares a fault of the reference is among them.
+pub(crate) fn judged(rows: &[TrackedRow], own: &Range<usize>, readings: &[Reading]) -> u64 {
+    let rows = rows.iter().filter(|row| own.contains(&row.place));
+    let judged = rows.filter(|row| {
+        let reason = readings[row.place].diagnostic.reason;
+        !matches!(
+            reason,
+            Some(SampleReason::MagneticCargo | SampleReason::NoModel)
+        )
+    });
+    judged.count() as u64
+}
+
+fn used_of(span: &Span<'_>, readings: &[Reading]) -> u64 {
+    let past: u64 = span.past.iter().map(|piece| piece.used).sum();
+    let own = readings[span.own.clone()].iter();
+    past + own.filter(|reading| reading.diagnostic.used).count() as u64
+}
+
+/// Counts the readings of the epoch and of the earlier ones, and the residuals of those that were
+/// used.
+fn count(model: &mut Model, span: &Span<'_>, earlier: &[&Span<'_>], readings: &[Reading]) {
+    let offered_of = |span: &Span<'_>| {
+        let past: u64 = span.past.iter().map(|piece| piece.readings).sum();
+        past + span.own.len() as u64
+    };
+    let past = span.past.iter().map(|piece| piece.squares);
+    let own = readings[span.own.clone()].iter();
+    let own = own.filter(|reading| reading.diagnostic.used);
+    let own = own.filter_map(|reading| reading.diagnostic.residual_deg);
+    let squares: f64 = past.chain(own.map(|residual| residual * residual)).sum();
+    let own_used = used_of(span, readings);
+    let used = own_used + (earlier.iter().map(|span| used_of(span, readings))).sum::<u64>();
+    let offered = offered_of(span) + earlier.iter().map(|span| offered_of(span)).sum::<u64>();
     model.rms_deg = Some((squares / own_used.max(1) as f64).sqrt());
-    model.samples_used = (own_used + used_before) as u64;
-    model.samples_rejected = (offered - own_used - used_before) as u64;
+    model.samples_used = used;
+    model.samples_rejected = offered - used;
 }
 
 /// Fails when there are readings, and the field is too weak for a compass in all of them.
-fn check_field(own: &[Reading], observations: &[Observation]) -> Result<(), FitError> {
-    let weak = own
+fn check_field(span: &Span<'_>, readings: &[Reading], offered: u64) -> Result<(), FitError> {
+    let weak = readings[span.own.clone()]
         .iter()
         .filter(|reading| reading.diagnostic.reason == Some(SampleReason::FieldTooWeak))
         .filter_map(|reading| reading.earth);
-    match weak.map(|earth| earth.h_nt).reduce(f64::max) {
-        Some(strongest_nt) if observations.is_empty() => Err(FitError::FieldTooWeak {
+    let weak = weak.map(|earth| Some(earth.h_nt));
+    let past = span.past.iter().map(|piece| piece.strongest_weak_nt);
+    match past.chain(weak).reduce(stronger).flatten() {
+        Some(strongest_nt) if offered == 0 => Err(FitError::FieldTooWeak {
             strongest_nt,
             needed_nt: WEAKEST_H_NT,
         }),
@@ -327,17 +432,10 @@ fn check_field(own: &[Reading], observations: &[Observation]) -> Result<(), FitE
 }
 
 /// Fails when one compass heading stands for several courses in the usual field.
-fn check_needle(model: &Model, observations: &[Observation]) -> Result<(), FitError> {
-    let mut fields: Vec<EarthField> = observations
-        .iter()
-        .map(|o| EarthField {
-            h_nt: o.h_nt,
-            z_nt: o.z_nt,
-        })
-        .collect();
-    let middle = fields.len() / 2;
-    let (_, &mut earth, _) =
-        fields.select_nth_unstable_by(middle, |a, b| a.h_nt.total_cmp(&b.h_nt));
+fn check_needle(model: &Model, observations: &Tally) -> Result<(), FitError> {
+    let Some(earth) = observations.usual_field() else {
+        return Ok(());
+    };
     Coefficients::new(&model.parameters_over_lambda, earth)
         .and_then(|coefficients| coefficients.check_unambiguous())
         .map_err(|_| FitError::AmbiguousHeadings { h_nt: earth.h_nt })

@@ -6,5 +6,5 @@ mod quality;
 mod spans;
 
 pub(super) use boundaries::{Boundaries, begins_an_epoch};
-pub(super) use fit::{Fitting, fit_epochs};
+pub(super) use fit::{Fitting, NEEDED_SAMPLES, fit_epochs, judged};
 pub(super) use spans::{Span, spans};

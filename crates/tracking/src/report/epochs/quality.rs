@@ -33,7 +33,7 @@ pub(super) struct Knowledge<'a> {
     /// Field at the last sample, and the weakest of all.
     pub(super) earth: EarthField,
     pub(super) weakest_h_nt: f64,
-    pub(super) samples: usize,
+    pub(super) samples: u64,
     /// Variance of a sample, degrees squared.
     pub(super) row_variance: f64,
     /// Standard deviation of the reference's constant error, degrees.

@@ -1,6 +1,7 @@
 //! Epochs as ranges of readings, with the ship at their ends.
 
 use super::boundaries::{Boundaries, Boundary};
+use crate::report::past::Piece;
 use crate::state_space::ship_state::ShipState;
 use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::logbook::LogbookKind;
@@ -22,10 +23,19 @@ pub(crate) struct Span<'a> {
     pub(crate) is_return: bool,
     /// Earlier epoch with the same magnetism.
     pub(crate) resumes: Option<usize>,
-    /// Places of its readings.
+    /// Its settled readings.
+    pub(crate) past: &'a [Piece],
+    /// Places of its readings that are not settled.
     pub(crate) own: Range<usize>,
     /// Ship at its end; none without a row until then.
     pub(crate) ship: Option<&'a ShipState>,
+}
+
+impl Span<'_> {
+    /// Returns true if it has no readings.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.past.is_empty() && self.own.is_empty()
+    }
 }
 
 /// Detected event that lasts, and the epoch that it ended.
@@ -34,12 +44,15 @@ struct Lasting {
     ended: usize,
 }
 
-/// Returns the epochs between boundaries; `current` is the ship from the last row on.
+/// Returns the epochs between boundaries; `current` is the ship from the last row on, and `past`
+/// are the settled readings.
 pub(crate) fn spans<'a>(
     boundaries: &Boundaries<'a>,
     current: Option<&'a ShipState>,
     readings: &[Reading],
+    past: &'a [Piece],
 ) -> Vec<Span<'a>> {
+    let piece = |time: Timestamp| past.partition_point(|piece| piece.from < time);
     let place = |time: Timestamp| readings.partition_point(|r| r.sample().time < time);
     let list = &boundaries.list;
     let mut lasting: Vec<Lasting> = Vec::new();
@@ -58,6 +71,8 @@ pub(crate) fn spans<'a>(
             begun_by_change: from.and_then(|boundary| boundary.cause),
             is_return: from.is_some_and(|boundary| boundary.is_return),
             resumes: from.and_then(|boundary| resumed(boundary, &mut lasting)),
+            past: &past[from.map_or(0, |boundary| piece(boundary.at))
+                ..next.map_or(past.len(), |boundary| piece(boundary.at))],
             own: begin..end,
             ship: next.map_or(current, |boundary| boundary.ship_before),
         });

@@ -66,6 +66,11 @@ impl FrozenFilter {
         })
     }
 
+    /// Makes the covariance symmetric to the last bit.
+    pub(crate) fn make_symmetric(&mut self) {
+        self.filter.make_symmetric();
+    }
+
     /// Adds the next row, of a weight that is small where its reading is wild.
     pub(crate) fn add(&mut self, row: &Row, levels: &Levels, weight: f64) {
         let transition = Transition::to(row, levels);

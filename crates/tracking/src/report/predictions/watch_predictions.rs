@@ -82,6 +82,13 @@ impl WatchPredictions {
         }
     }
 
+    /// Makes the covariance of the watch that goes on symmetric to the last bit.
+    pub(crate) fn make_symmetric(&mut self) {
+        if let Some(open) = &mut self.open {
+            open.filter.make_symmetric();
+        }
+    }
+
     /// Ends the watch: what follows is predicted anew.
     pub(crate) fn interrupt(&mut self) {
         let Some(open) = self.open.take() else { return };
@@ -129,6 +136,19 @@ impl WatchPredictions {
             watches_disturbed,
             mean_square: scale.mean_square,
             widening: scale.widening,
+        }
+    }
+}
+
+impl WatchPredictions {
+    /// Forgets the watches before those that count at some time.
+    pub(crate) fn forget(&mut self, until: Timestamp, detected: &[Detected]) {
+        let known = self.watches.partition_point(|watch| watch.until <= until);
+        let counting = self.watches[..known].iter().enumerate().rev();
+        let mut counting =
+            counting.filter(|(_, watch)| !detected.iter().any(|d| disturbs(d, watch)));
+        if let Some((oldest, _)) = counting.nth(LATEST - 1) {
+            self.watches.drain(..oldest);
         }
     }
 }

@@ -26,6 +26,8 @@ fn found(cause: Found, size_deg: f64) -> ChangeFinding {
             from_latest: from,
             detected_at: at("2026-11-18T14:00:00Z"),
             confirmed: true,
+            position: None,
+            disturbed_deg: None,
             withdrawn: false,
             cause,
             causes: vec![CauseProbability {

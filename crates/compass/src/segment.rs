@@ -1,0 +1,59 @@
+//! Segments of a compass's samples.
+
+use crate::time::Timestamp;
+
+/// Length of a segment, microseconds: 30 days.
+const SEGMENT_MICROS: i64 = 30 * 86_400 * 1_000_000;
+
+/// Segment of a compass's samples: 30 days, counted from 1970.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Segment(i64);
+
+impl Segment {
+    /// Returns the segment of a number.
+    pub fn new(number: i64) -> Segment {
+        Segment(number)
+    }
+
+    /// Returns the segment in which a time lies.
+    pub fn of(time: Timestamp) -> Segment {
+        Segment(time.micros().div_euclid(SEGMENT_MICROS))
+    }
+
+    /// Returns its number.
+    pub fn number(self) -> i64 {
+        self.0
+    }
+
+    /// Returns its beginning; none before the first year of a timestamp.
+    pub fn begin(self) -> Option<Timestamp> {
+        Timestamp::from_micros(self.0.checked_mul(SEGMENT_MICROS)?).ok()
+    }
+
+    /// Returns the instant after its end; none after the last year of a timestamp.
+    pub fn end(self) -> Option<Timestamp> {
+        Segment(self.0.checked_add(1)?).begin()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_segment_has_the_times_from_its_beginning_until_before_its_end() {
+        let time = Timestamp::parse("2026-11-21T07:00:00Z").unwrap();
+        let segment = Segment::of(time);
+        let (begin, end) = (segment.begin().unwrap(), segment.end().unwrap());
+        assert!(begin <= time && time < end);
+        assert_eq!(end.micros() - begin.micros(), SEGMENT_MICROS);
+        assert_eq!(Segment::of(begin), segment);
+        assert_eq!(Segment::of(end), Segment::new(segment.number() + 1));
+    }
+
+    #[test]
+    fn a_segment_beyond_all_times_has_no_ends() {
+        assert_eq!(Segment::new(i64::MAX).begin(), None);
+        assert_eq!(Segment::new(i64::MAX).end(), None);
+    }
+}
