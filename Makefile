@@ -6,7 +6,7 @@ CARGO ?= cargo
 # What has tests, and the programs that tests drive: benchmarks and studies are no part of it.
 TESTED := --lib --bins --tests --example changes_baselines
 
-.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak soak-agent bench bench-link bench-latency bench-formats bench-peer bench-changes bench-web study study-adjust study-ships study-losses methods clean
+.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak soak-agent bench bench-link bench-latency bench-formats bench-peer bench-scale bench-changes bench-web study study-adjust study-ships study-losses methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -97,6 +97,9 @@ study-losses: setup ## Measure what rounding and thinning cost the estimator
 
 methods: setup ## Compare the published fit, least squares, Huber and Binnacle on voyages
 	$(CARGO) run --locked --release -p binnacle-analysis --example methods
+
+bench-scale: setup ## Measure what a new batch costs the server as a ship's history grows
+	scripts/bench-scale
 
 bench-peer: setup ## Compare the fit with the same model in statsmodels and NumPy, in pairs
 	scripts/bench-peer

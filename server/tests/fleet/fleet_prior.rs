@@ -100,6 +100,7 @@ async fn analysed(server: &TestServer, vessel_id: VesselId, compass_id: CompassI
             predictions: None,
         },
         findings: Findings::default(),
+        segments: Vec::new(),
     };
     let mut tx = server.app.db.begin().await.unwrap();
     let now = Time(server.app.clock.now());

@@ -190,7 +190,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
         _ => (model.data_from, model.data_until.0.plus_seconds(1.0).into()),
     };
     let data = data_of(app, &model).await?;
-    let samples = analysis::chunks(db, id, compass.id, Some(from), Some(until)).await?;
+    let samples = analysis::samples(db, id, compass.id, Some(from), Some(until)).await?;
     let completed = adjustments::completed(db, id, compass.id).await?;
     let binnacle = binnacles::current(db, id, compass.id).await?;
     let logbook = logbook::of_compass(db, id, compass.id).await?;
@@ -201,7 +201,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
             None => SampleRole::Fitted,
         };
         let input = CardInput {
-            observed: observed(&samples, from, role)?,
+            observed: observed(&samples, from, role),
             vessel: CardVessel {
                 id,
                 name: vessel.name,

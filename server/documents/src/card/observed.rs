@@ -2,11 +2,9 @@
 
 use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::model::Model;
-use binnacle_compass::result::SampleReason;
+use binnacle_compass::result::{SampleDiagnostic, SampleReason};
 use binnacle_compass::ship::EarthField;
-use binnacle_platform::error::Result;
 use binnacle_platform::time::Time;
-use serde::Deserialize;
 
 /// Degrees of compass heading from one line of a card to the next.
 pub(super) const STEP_DEG: f64 = 15.0;
@@ -31,55 +29,34 @@ pub(super) enum SampleRole<'a> {
     Predicted(&'a Model),
 }
 
-/// Fields of a sample that the comparison needs.
-#[derive(Deserialize)]
-struct Sample {
-    time: Time,
-    compass_deg: f64,
-    #[serde(default)]
-    h_nt: Option<f64>,
-    #[serde(default)]
-    z_nt: Option<f64>,
-    #[serde(default)]
-    deviation_deg: Option<f64>,
-    residual_deg: Option<f64>,
-    weight: f64,
-    used: bool,
-    #[serde(default)]
-    reason: Option<SampleReason>,
-}
-
-/// Collects the observations of an epoch from `from` on, by lines of the card. `chunks` are JSON
-/// arrays of samples.
+/// Collects the observations of an epoch from `from` on, by lines of the card.
 pub(super) fn observed(
-    chunks: &[String],
+    samples: &[SampleDiagnostic],
     from: Time,
     role: SampleRole<'_>,
-) -> Result<[Observed; SECTORS]> {
+) -> [Observed; SECTORS] {
     let mut sums = [(0_u64, 0.0_f64, 0.0_f64); SECTORS];
-    for chunk in chunks {
-        for sample in serde_json::from_str::<Vec<Sample>>(chunk)? {
-            if sample.time < from {
-                continue;
-            }
-            let Some((residual_deg, weighs)) = role.residual(&sample) else {
-                continue;
-            };
-            let (samples, weight, sum) = &mut sums[sector(sample.compass_deg)];
-            *samples += 1;
-            *weight += weighs;
-            *sum += weighs * residual_deg;
-        }
+    for found in samples
+        .iter()
+        .filter(|found| Time(found.sample.time) >= from)
+    {
+        let Some((residual_deg, weighs)) = role.residual(found) else {
+            continue;
+        };
+        let (samples, weight, sum) = &mut sums[sector(found.sample.compass)];
+        *samples += 1;
+        *weight += weighs;
+        *sum += weighs * residual_deg;
     }
-    Ok(sums.map(|(samples, weight, sum)| Observed {
+    sums.map(|(samples, weight, sum)| Observed {
         samples,
         residual_deg: (weight > 0.0).then(|| sum / weight),
-    }))
+    })
 }
 
 impl SampleRole<'_> {
     /// Returns measured less predicted deviation, and its weight.
-    fn residual(self, sample: &Sample) -> Option<(f64, f64)> {
+    fn residual(self, sample: &SampleDiagnostic) -> Option<(f64, f64)> {
         match self {
             SampleRole::Fitted => {
                 Some((sample.residual_deg?, sample.weight)).filter(|_| sample.used)
@@ -92,8 +69,10 @@ impl SampleRole<'_> {
                     h_nt: sample.h_nt?,
                     z_nt: sample.z_nt?,
                 };
-                let compass = CompassHeading::new(sample.compass_deg)?;
-                let predicted = model.deviation(compass, earth).ok()?.deviation;
+                let predicted = model
+                    .deviation(sample.sample.compass, earth)
+                    .ok()?
+                    .deviation;
                 let residual_deg = sample.deviation_deg? - predicted.degrees_east();
                 Some((wrap_180(residual_deg), 1.0))
             }
@@ -101,8 +80,8 @@ impl SampleRole<'_> {
     }
 }
 
-fn sector(compass_deg: f64) -> usize {
-    (compass_deg / STEP_DEG).round() as usize % SECTORS
+fn sector(compass: CompassHeading) -> usize {
+    (compass.degrees() / STEP_DEG).round() as usize % SECTORS
 }
 
 #[cfg(test)]
@@ -114,26 +93,30 @@ mod tests {
         Time(Timestamp::parse(text).unwrap())
     }
 
-    fn chunk(samples: &[(f64, Option<f64>, f64, bool)]) -> String {
-        let samples = samples
-            .iter()
-            .map(|(compass_deg, residual_deg, weight, used)| {
-                serde_json::json!({
-                    "time": "2026-11-21T07:00:00Z", "compass_deg": compass_deg,
-                    "residual_deg": residual_deg, "weight": weight, "used": used,
-                })
-            });
-        serde_json::Value::from(samples.collect::<Vec<_>>()).to_string()
+    fn samples(of: &[(f64, Option<f64>, f64, bool)]) -> Vec<SampleDiagnostic> {
+        let sample =
+            |&(compass_deg, residual_deg, weight, used): &(f64, Option<f64>, f64, bool)| {
+                let diagnostic = serde_json::json!({
+                    "time": "2026-11-21T07:00:00Z", "lat": 43.0, "lon": -8.0,
+                    "compass_deg": compass_deg, "gyro_deg": 90.0, "satellite_deg": null,
+                    "sog_kn": 12.0, "rate_of_turn_deg_min": 0.0, "spread_deg": 0.1, "windows": 60,
+                    "variation_deg": null, "h_nt": null, "z_nt": null, "deviation_deg": null,
+                    "predicted_deg": null, "residual_deg": residual_deg, "weight": weight,
+                    "used": used, "reason": null,
+                });
+                serde_json::from_value(diagnostic).unwrap()
+            };
+        of.iter().map(sample).collect()
     }
 
     #[test]
     fn a_sample_belongs_to_the_nearest_line_also_across_north() {
-        let chunks = [chunk(&[
+        let samples = samples(&[
             (352.6, Some(1.0), 1.0, true),
             (7.4, Some(3.0), 1.0, true),
             (7.6, Some(-1.0), 0.5, true),
-        ])];
-        let found = observed(&chunks, from("2026-11-01T00:00:00Z"), SampleRole::Fitted).unwrap();
+        ]);
+        let found = observed(&samples, from("2026-11-01T00:00:00Z"), SampleRole::Fitted);
         assert_eq!((found[0].samples, found[0].residual_deg), (2, Some(2.0)));
         assert_eq!((found[1].samples, found[1].residual_deg), (1, Some(-1.0)));
         assert_eq!(found[2], Observed::default());
@@ -141,15 +124,15 @@ mod tests {
 
     #[test]
     fn what_the_model_does_not_rest_on_is_no_observation() {
-        let chunks = [chunk(&[
+        let samples = samples(&[
             (90.0, Some(9.0), 0.0, false),
             (90.0, None, 1.0, true),
             (90.0, Some(1.0), 1.0, true),
             (90.0, Some(4.0), 0.5, true),
-        ])];
-        let found = observed(&chunks, from("2026-11-01T00:00:00Z"), SampleRole::Fitted).unwrap();
+        ]);
+        let found = observed(&samples, from("2026-11-01T00:00:00Z"), SampleRole::Fitted);
         assert_eq!((found[6].samples, found[6].residual_deg), (2, Some(2.0)));
-        let later = observed(&chunks, from("2026-11-21T07:00:01Z"), SampleRole::Fitted).unwrap();
+        let later = observed(&samples, from("2026-11-21T07:00:01Z"), SampleRole::Fitted);
         assert_eq!(later[6], Observed::default());
     }
 }

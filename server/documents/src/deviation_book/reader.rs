@@ -2,14 +2,13 @@
 
 use super::cards::{CardEnds, Cards};
 use super::entry::{Entry, EntryKey, of_azimuth, of_samples};
-use binnacle_compass::result::SampleDiagnostic;
 use binnacle_fleet::adjustments::{self, CompletedOrder};
 use binnacle_fleet::analysis::{self, Chunk};
 use binnacle_fleet::azimuths::{self, StoredAzimuth};
 use binnacle_fleet::logbook;
 use binnacle_fleet::models;
 use binnacle_platform::db::Db;
-use binnacle_platform::error::{Error, Result};
+use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 use std::collections::VecDeque;
@@ -69,14 +68,13 @@ impl BookReader {
         };
         let (db, vessel, compass) = (&self.db, self.vessel, self.compass);
         let models = models::list_in_force(db, vessel, compass, range.from, range.to).await?;
-        let text = match chunk {
+        let samples = match chunk {
             Some(chunk) => analysis::chunk(db, vessel, compass, &chunk).await?,
-            None => "[]".to_owned(),
+            None => Vec::new(),
         };
         let (from, to, ends) = (self.from, self.to, self.ends.clone());
         let completed = self.completed.clone();
         let made = tokio::task::spawn_blocking(move || {
-            let samples: Vec<SampleDiagnostic> = serde_json::from_str(&text)?;
             let cards = Cards {
                 models: &models,
                 ends: &ends,
@@ -88,9 +86,9 @@ impl BookReader {
                 from.is_none_or(|from| entry.time >= from) && to.is_none_or(|to| entry.time < to)
             });
             found.sort_by_key(Entry::key);
-            Ok::<_, Error>(found)
+            found
         });
-        Ok(Some(made.await??))
+        Ok(Some(made.await?))
     }
 
     /// Takes the azimuths before an instant; all that are left if there is none.

@@ -115,7 +115,7 @@ fn passing(findings: &Findings) -> impl Iterator<Item = (Time, Time, Position)> 
         let change = &found.change;
         let ended = change.ended.or(until)?.max(change.from);
         let is_known = change.cause.is_transient() && !change.is_weak_transient();
-        let position = found.position.filter(|_| is_known)?;
+        let position = found.change.position.filter(|_| is_known)?;
         Some((change.from.into(), ended.into(), position))
     })
 }
@@ -207,13 +207,16 @@ impl Neighbourhood {
         let from = found.change.from;
         let until = found.change.ended.or(data_until)?.max(from);
         // No place is in an empty belt.
-        let belt = found.position.map_or(((1.0, 0.0), (1.0, 0.0)), |here| {
-            let (lat, lon) = (here.lat_deg(), here.lon_deg());
-            (
-                (lat - BELT_DEG, lat + BELT_DEG),
-                (lon - BELT_LON_DEG, lon + BELT_LON_DEG),
-            )
-        });
+        let belt = found
+            .change
+            .position
+            .map_or(((1.0, 0.0), (1.0, 0.0)), |here| {
+                let (lat, lon) = (here.lat_deg(), here.lon_deg());
+                (
+                    (lat - BELT_DEG, lat + BELT_DEG),
+                    (lon - BELT_LON_DEG, lon + BELT_LON_DEG),
+                )
+            });
         Some(Neighbourhood {
             from: from.into(),
             until: until.into(),
@@ -240,6 +243,11 @@ fn compare(
             position: Position::new(other.lat, other.lon).map_err(anyhow::Error::from)?,
         });
     }
-    found.change = weigh_with_fleet(&found.change, found.position, near.until.0, &elsewhere);
+    found.change = weigh_with_fleet(
+        &found.change,
+        found.change.position,
+        near.until.0,
+        &elsewhere,
+    );
     Ok(())
 }

@@ -1,46 +1,68 @@
-//! Input of an analysis, and the hash that names it.
+//! Input of an analysis: the log by segments, and the keys that name what is derived from it.
+//!
+//! The key of a segment is the hash of all that an analysis knows at its end: estimator, settings
+//! and prior, the logbook and the azimuths until then, and the samples of this segment and of all
+//! before. So whatever changes the input changes the keys from its own segment on, and no other.
 
 use crate::{azimuths, logbook, settings};
 use anyhow::Context;
 use binnacle_compass::azimuth::Azimuth;
 use binnacle_compass::logbook::LogbookEntry;
-use binnacle_compass::result::ESTIMATOR;
-use binnacle_compass::sample::Sample;
+use binnacle_compass::result::{ESTIMATOR, STATE_FORM};
+use binnacle_compass::sample::{Sample, sort_distinct};
+use binnacle_compass::segment::Segment;
 use binnacle_compass::settings::AnalysisSettings;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::db::{Db, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_platform::time::Time;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
+use std::collections::BTreeSet;
+use std::fmt;
 
-/// Input of an analysis of one compass.
-#[derive(Clone, Debug)]
-pub struct Input {
-    /// Distinct, in order of time.
-    pub samples: Vec<Sample>,
+/// SHA-256.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hash(pub [u8; 32]);
+
+impl fmt::Display for Hash {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+/// Stored input of a compass, without the batches themselves.
+pub struct StoredInput {
+    /// Hashes of the batches, by segment, the first first.
+    pub segments: Vec<LoggedSegment>,
     /// Entries of the logbook.
     pub logbook: Vec<LogbookEntry>,
     /// Azimuths taken with the compass, in order of time.
     pub azimuths: Vec<Azimuth>,
     /// Settings of the operator.
     pub settings: AnalysisSettings,
-    /// Prior from the vessel's fleet, as JSON; none: the population's.
-    pub prior: Option<String>,
-}
-
-/// Stored input of a compass, with its batches as received.
-pub struct StoredInput {
-    batches: Vec<(Vec<u8>,)>,
-    logbook: Vec<LogbookEntry>,
-    azimuths: Vec<Azimuth>,
-    settings: AnalysisSettings,
     /// Time at which the next future-dated entry takes effect.
     pub next_entry_at: Option<Timestamp>,
 }
 
-/// Reads the stored input of a compass. Future-dated logbook entries are left out: the card
+/// Segment of the log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LoggedSegment {
+    /// The segment. Samples of a batch in between belong to the next that is logged.
+    pub segment: Segment,
+    /// Hash of the hashes of the batches with samples in it.
+    pub batches: Hash,
+}
+
+#[derive(sqlx::FromRow)]
+struct ListedBatch {
+    sha256: Vec<u8>,
+    first_sample_at: Time,
+    last_sample_at: Time,
+}
+
+/// Lists the stored input of a compass. Future-dated logbook entries are left out: the card
 /// holds until the planned work is done.
 pub async fn load(
     db: &Db,
@@ -50,10 +72,11 @@ pub async fn load(
 ) -> Result<StoredInput> {
     let batches = rows!(
         db,
-        (Vec<u8>,),
-        "SELECT b.bytes FROM batches b
+        ListedBatch,
+        "SELECT b.sha256, b.first_sample_at, b.last_sample_at FROM batches b
          JOIN streams s ON s.vessel_id = b.vessel_id AND s.id = b.stream
          WHERE b.vessel_id = $1 AND s.compass_id = $2
+           AND b.first_sample_at IS NOT NULL AND b.last_sample_at IS NOT NULL
          ORDER BY b.stream, b.seq",
         vessel,
         compass
@@ -64,7 +87,7 @@ pub async fn load(
         .partition(|entry| entry.from <= now);
     let azimuths = azimuths::of_compass(db, vessel, compass, None, None).await?;
     Ok(StoredInput {
-        batches,
+        segments: segments(batches),
         logbook,
         azimuths: azimuths.into_iter().map(|stored| stored.azimuth).collect(),
         next_entry_at: ahead.iter().map(|entry| entry.from).min(),
@@ -72,70 +95,158 @@ pub async fn load(
     })
 }
 
-impl StoredInput {
-    /// Tells whether the compass has no batches.
-    pub fn is_empty(&self) -> bool {
-        self.batches.is_empty()
-    }
-
-    /// Decodes the batches. It takes long, so it must not run on an async thread.
-    pub fn decode(self, prior: Option<String>) -> anyhow::Result<Input> {
-        let mut samples = Vec::new();
-        for (bytes,) in self.batches {
-            let batch = binnacle_wire::decode(&bytes).context("a stored batch cannot be read")?;
-            samples.extend(batch.samples);
+/// Returns the segments in which batches begin or end.
+fn segments(mut batches: Vec<ListedBatch>) -> Vec<LoggedSegment> {
+    let ends = |batch: &ListedBatch| [batch.first_sample_at, batch.last_sample_at];
+    let segments: BTreeSet<Segment> = batches
+        .iter()
+        .flat_map(ends)
+        .map(|time| Segment::of(time.0))
+        .collect();
+    // The order in which they arrived counts for nothing.
+    batches.sort_unstable_by(|a, b| {
+        (a.first_sample_at, &a.sha256).cmp(&(b.first_sample_at, &b.sha256))
+    });
+    let mut before: Option<Segment> = None;
+    let mut logged = Vec::with_capacity(segments.len());
+    for segment in segments {
+        let mut hash = Sha256::new();
+        let later =
+            batches.partition_point(|batch| Segment::of(batch.first_sample_at.0) <= segment);
+        for batch in &batches[..later] {
+            if before.is_none_or(|before| Segment::of(batch.last_sample_at.0) > before) {
+                hash.update(&batch.sha256);
+            }
         }
-        Ok(Input {
-            samples: distinct(samples)?,
-            logbook: self.logbook,
-            azimuths: self.azimuths,
-            settings: self.settings,
-            prior,
-        })
+        let batches = Hash(hash.finalize().into());
+        logged.push(LoggedSegment { segment, batches });
+        before = Some(segment);
     }
+    logged
 }
 
-/// Sorts samples by time and removes repetitions: a batch sent again in a new stream counts once.
-fn distinct(samples: Vec<Sample>) -> anyhow::Result<Vec<Sample>> {
-    let mut keyed = Vec::with_capacity(samples.len());
-    for sample in samples {
-        keyed.push((sample.time, serde_json::to_string(&sample)?, sample));
-    }
-    keyed.sort_by(|x, y| (x.0, &x.1).cmp(&(y.0, &y.1)));
-    keyed.dedup_by(|x, y| x.1 == y.1);
-    Ok(keyed.into_iter().map(|(_, _, sample)| sample).collect())
+/// Reads the batches of a compass with samples from one time to another.
+pub async fn load_batches(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+    from: Option<Timestamp>,
+    to: Option<Timestamp>,
+) -> Result<Vec<(Vec<u8>,)>> {
+    let batches = rows!(
+        db,
+        (Vec<u8>,),
+        "SELECT b.bytes FROM batches b
+         JOIN streams s ON s.vessel_id = b.vessel_id AND s.id = b.stream
+         WHERE b.vessel_id = $1 AND s.compass_id = $2
+           AND b.last_sample_at >= $3 AND b.first_sample_at <= $4
+         ORDER BY b.stream, b.seq",
+        vessel,
+        compass,
+        from.map_or(i64::MIN, Timestamp::micros),
+        to.map_or(i64::MAX, Timestamp::micros)
+    )?;
+    Ok(batches)
 }
 
-/// Returns the SHA-256 of estimator, settings, prior, logbook, azimuths and samples, as
-/// hexadecimal. The population's prior is the estimator's own, and adds nothing.
+/// Decodes batches to distinct samples in order of time. It takes long, so it must not run on an
+/// async thread.
+///
+/// # Errors
+/// Fails when a batch cannot be read.
+pub fn decode(batches: &[(Vec<u8>,)]) -> anyhow::Result<Vec<Sample>> {
+    let mut samples = Vec::new();
+    for (bytes,) in batches {
+        let batch = binnacle_wire::decode(bytes).context("a stored batch cannot be read")?;
+        samples.extend(batch.samples);
+    }
+    sort_distinct(&mut samples);
+    Ok(samples)
+}
+
+/// Returns the hash of samples in order.
 ///
 /// # Errors
 /// Fails when they cannot be written as JSON.
-pub fn input_hash(input: &Input) -> anyhow::Result<String> {
+pub fn hash_samples(samples: &[Sample]) -> anyhow::Result<Hash> {
     let mut hash = Sha256::new();
-    hash.update(ESTIMATOR);
-    update(&mut hash, &input.settings)?;
-    if let Some(prior) = &input.prior {
-        hash.update(b"\n");
-        hash.update(prior);
-    }
-    update(&mut hash, &input.logbook)?;
-    for azimuth in &input.azimuths {
-        update(&mut hash, azimuth.form())?;
-    }
-    for sample in &input.samples {
+    for sample in samples {
         update(&mut hash, sample)?;
     }
-    let mut text = String::with_capacity(64);
-    for byte in hash.finalize() {
-        write!(text, "{byte:02x}")?;
+    Ok(Hash(hash.finalize().into()))
+}
+
+impl StoredInput {
+    /// Returns the key before the first segment: of estimator, form of states, settings and prior. The
+    /// population's prior is the estimator's own, and adds nothing.
+    ///
+    /// # Errors
+    /// Fails when they cannot be written as JSON.
+    pub fn first_key(&self, prior: Option<&str>) -> anyhow::Result<Hash> {
+        let mut hash = Sha256::new();
+        hash.update(ESTIMATOR);
+        update(&mut hash, &STATE_FORM)?;
+        update(&mut hash, &self.settings)?;
+        if let Some(prior) = prior {
+            hash.update(b"\n");
+            hash.update(prior);
+        }
+        Ok(Hash(hash.finalize().into()))
     }
-    Ok(text)
+
+    /// Returns the key of the segment with a place, from the one before it and the hash of its
+    /// samples.
+    ///
+    /// # Errors
+    /// Fails when the logbook or the azimuths cannot be written as JSON.
+    pub fn key(&self, before: Hash, place: usize, samples: Hash) -> anyhow::Result<Hash> {
+        let end = self.end(place);
+        let mut hash = Sha256::new();
+        hash.update(before.0);
+        update(&mut hash, &end)?;
+        for entry in &self.logbook {
+            let known = match end {
+                Some(end) => entry.known_before(end),
+                None => Some(entry.clone()),
+            };
+            if let Some(entry) = known {
+                update(&mut hash, &entry)?;
+            }
+        }
+        let azimuths = self.azimuths.iter();
+        for azimuth in azimuths.filter(|azimuth| end.is_none_or(|end| azimuth.time() < end)) {
+            update(&mut hash, azimuth.form())?;
+        }
+        hash.update(samples.0);
+        Ok(Hash(hash.finalize().into()))
+    }
+
+    /// Returns the instant after the end of the segment with a place; none of the last.
+    pub fn end(&self, place: usize) -> Option<Timestamp> {
+        if place + 1 == self.segments.len() {
+            return None;
+        }
+        self.segments[place].segment.end()
+    }
+
+    /// Returns the samples of each segment from a place on, from samples in order of time.
+    pub fn split<'a>(&self, from: usize, samples: &'a [Sample]) -> Vec<&'a [Sample]> {
+        let begin = from.checked_sub(1).and_then(|before| self.end(before));
+        let before = |time: Timestamp| samples.partition_point(|sample| sample.time < time);
+        let mut begin = begin.map_or(0, before);
+        let mut split = Vec::new();
+        for place in from..self.segments.len() {
+            let end = self.end(place).map_or(samples.len(), before);
+            split.push(&samples[begin..end]);
+            begin = end;
+        }
+        split
+    }
 }
 
 fn update(hash: &mut Sha256, value: &impl Serialize) -> anyhow::Result<()> {
+    hash.update(serde_json::to_vec(value)?);
     hash.update(b"\n");
-    hash.update(serde_json::to_string(value)?);
     Ok(())
 }
 
@@ -144,8 +255,12 @@ mod tests {
     use super::*;
     use binnacle_compass::angle::CourseOverGround;
     use binnacle_compass::azimuth::AzimuthForm;
+    use binnacle_compass::logbook::LogbookKind;
     use binnacle_compass::sample::SourceId;
-    use std::collections::BTreeSet;
+
+    fn time(text: &str) -> Timestamp {
+        Timestamp::parse(text).unwrap()
+    }
 
     fn sample(second: u32, compass_deg: f64) -> Sample {
         serde_json::from_value(serde_json::json!({
@@ -156,17 +271,9 @@ mod tests {
         .unwrap()
     }
 
-    fn hash(samples: Vec<Sample>) -> String {
-        let settings = AnalysisSettings::default();
-        let samples = distinct(samples).unwrap();
-        input_hash(&Input {
-            samples,
-            logbook: Vec::new(),
-            azimuths: Vec::new(),
-            settings,
-            prior: None,
-        })
-        .unwrap()
+    fn hash(mut samples: Vec<Sample>) -> Hash {
+        sort_distinct(&mut samples);
+        hash_samples(&samples).unwrap()
     }
 
     #[test]
@@ -175,7 +282,7 @@ mod tests {
         let with = |change: fn(&mut Sample)| {
             let mut changed = bare;
             change(&mut changed);
-            hash(vec![changed])
+            hash(vec![changed]).to_string()
         };
         let hashes = [
             with(|_| {}),
@@ -192,54 +299,6 @@ mod tests {
         assert!(!serde_json::to_string(&bare).unwrap().contains("roll"));
     }
 
-    /// Returns the hash of no samples with azimuths of a quay in some true direction each.
-    fn hash_of_azimuths(quays_deg: &[f64]) -> String {
-        let azimuth = |quay_deg: &f64| -> Azimuth {
-            let form: AzimuthForm = serde_json::from_value(serde_json::json!({
-                "time": "2026-11-21T07:00:00Z", "lat": 43.0, "lon": -3.0,
-                "compass_heading_deg": 91.0, "kind": "quay", "name": "Muelle 3",
-                "true_bearing_deg": quay_deg,
-            }))
-            .unwrap();
-            Azimuth::new(form).unwrap()
-        };
-        input_hash(&Input {
-            samples: Vec::new(),
-            logbook: Vec::new(),
-            azimuths: quays_deg.iter().map(azimuth).collect(),
-            settings: AnalysisSettings::default(),
-            prior: None,
-        })
-        .unwrap()
-    }
-
-    #[test]
-    fn each_azimuth_counts_in_the_hash() {
-        let hashes = [&[][..], &[95.0], &[96.0], &[95.0, 96.0], &[95.0, 95.0]];
-        let distinct: BTreeSet<String> = hashes.map(hash_of_azimuths).into_iter().collect();
-        assert_eq!(distinct.len(), hashes.len());
-        assert_eq!(hash_of_azimuths(&[95.0]), hash_of_azimuths(&[95.0]));
-    }
-
-    #[test]
-    fn the_prior_counts_in_the_hash() {
-        let of = |prior: Option<&str>| {
-            let input = Input {
-                samples: vec![sample(0, 91.0)],
-                logbook: Vec::new(),
-                azimuths: Vec::new(),
-                settings: AnalysisSettings::default(),
-                prior: prior.map(str::to_owned),
-            };
-            input_hash(&input).unwrap()
-        };
-        let hashes = [None, Some(r#"{"basis":1}"#), Some(r#"{"basis":2}"#)].map(of);
-        let distinct: BTreeSet<&String> = hashes.iter().collect();
-        assert_eq!(distinct.len(), hashes.len());
-        assert_eq!(hashes[0], hash(vec![sample(0, 91.0)]));
-        assert_eq!(of(Some(r#"{"basis":1}"#)), hashes[1]);
-    }
-
     #[test]
     fn order_and_repetition_do_not_change_the_hash() {
         let (first, second) = (sample(0, 91.0), sample(10, 92.0));
@@ -249,5 +308,145 @@ mod tests {
             hash(vec![first, second]),
             hash(vec![first, sample(10, 92.1)])
         );
+    }
+
+    /// Returns a batch with the first and last sample at some times.
+    fn batch(number: u8, from: &str, to: &str) -> ListedBatch {
+        ListedBatch {
+            sha256: vec![number; 32],
+            first_sample_at: Time(time(from)),
+            last_sample_at: Time(time(to)),
+        }
+    }
+
+    /// Returns the batches of three segments; one lies across the end of the first.
+    fn batches() -> Vec<ListedBatch> {
+        vec![
+            batch(1, "2026-09-20T00:00:00Z", "2026-09-20T06:00:00Z"),
+            batch(2, "2026-10-03T20:00:00Z", "2026-10-04T06:00:00Z"),
+            batch(3, "2026-10-20T00:00:00Z", "2026-10-20T06:00:00Z"),
+            batch(4, "2026-11-20T00:00:00Z", "2026-11-20T06:00:00Z"),
+        ]
+    }
+
+    fn input(batches: Vec<ListedBatch>, logbook: Vec<LogbookEntry>) -> StoredInput {
+        StoredInput {
+            segments: segments(batches),
+            logbook,
+            azimuths: Vec::new(),
+            settings: AnalysisSettings::default(),
+            next_entry_at: None,
+        }
+    }
+
+    /// Returns the keys of all segments, as if each had one sample.
+    fn keys(input: &StoredInput, prior: Option<&str>) -> Vec<Hash> {
+        let samples = hash(vec![sample(0, 91.0)]);
+        let mut before = input.first_key(prior).unwrap();
+        let mut keys = Vec::new();
+        for place in 0..input.segments.len() {
+            before = input.key(before, place, samples).unwrap();
+            keys.push(before);
+        }
+        keys
+    }
+
+    fn same(a: &[Hash], b: &[Hash]) -> usize {
+        a.iter().zip(b).take_while(|(a, b)| a == b).count()
+    }
+
+    #[test]
+    fn a_batch_counts_in_the_segments_that_it_has_samples_of() {
+        let logged = segments(batches());
+        let mut reversed = batches();
+        reversed.reverse();
+        assert_eq!(segments(reversed), logged);
+        let without = |number: usize| {
+            let mut batches = batches();
+            batches.remove(number);
+            let other = segments(batches);
+            let place = |of: &LoggedSegment| other.iter().find(|o| o.segment == of.segment);
+            let is_same = |of: &LoggedSegment| place(of).is_some_and(|o| o.batches == of.batches);
+            logged.iter().map(is_same).collect::<Vec<bool>>()
+        };
+        assert_eq!(logged.len(), 3, "{logged:?}");
+        assert_eq!(without(0), [false, true, true]);
+        assert_eq!(without(1), [false, false, true]);
+        assert_eq!(without(3), [true, true, false]);
+    }
+
+    #[test]
+    fn an_entry_changes_the_keys_from_the_segment_in_which_it_is_known() {
+        let entry = |from: &str, to: Option<&str>| LogbookEntry {
+            from: time(from),
+            to: to.map(time),
+            kind: LogbookKind::Berth,
+            cargo: None,
+            note: String::new(),
+        };
+        let bare = keys(&input(batches(), Vec::new()), None);
+        let of = |entry: LogbookEntry| keys(&input(batches(), vec![entry]), None);
+        assert_eq!(same(&bare, &of(entry("2026-10-20T03:00:00Z", None))), 1);
+        let open = of(entry("2026-09-20T03:00:00Z", None));
+        assert_eq!(same(&bare, &open), 0);
+        // An end is known from its own segment on.
+        let ended = of(entry("2026-09-20T03:00:00Z", Some("2026-11-20T03:00:00Z")));
+        assert_eq!(same(&open, &ended), 2);
+    }
+
+    #[test]
+    fn prior_and_settings_change_all_keys() {
+        let bare = input(batches(), Vec::new());
+        let known = keys(&bare, None);
+        for prior in [r#"{"basis":1}"#, r#"{"basis":2}"#] {
+            assert_eq!(same(&known, &keys(&bare, Some(prior))), 0);
+        }
+        let mut other = input(batches(), Vec::new());
+        other.settings.reference_constant_sd_deg = 0.7;
+        assert_eq!(same(&known, &keys(&other, None)), 0);
+    }
+
+    #[test]
+    fn each_azimuth_counts_in_the_keys_from_its_segment_on() {
+        let azimuth = |quay_deg: f64| -> Azimuth {
+            let form: AzimuthForm = serde_json::from_value(serde_json::json!({
+                "time": "2026-10-21T07:00:00Z", "lat": 43.0, "lon": -3.0,
+                "compass_heading_deg": 91.0, "kind": "quay", "name": "Muelle 3",
+                "true_bearing_deg": quay_deg,
+            }))
+            .unwrap();
+            Azimuth::new(form).unwrap()
+        };
+        let of = |quays_deg: &[f64]| {
+            let mut input = input(batches(), Vec::new());
+            input.azimuths = quays_deg.iter().copied().map(azimuth).collect();
+            keys(&input, None)
+        };
+        let bare = of(&[]);
+        assert_eq!(same(&bare, &of(&[95.0])), 1);
+        assert_eq!(same(&of(&[95.0]), &of(&[96.0])), 1);
+        assert_eq!(same(&of(&[95.0]), &of(&[95.0, 95.0])), 1);
+        assert_eq!(same(&of(&[95.0]), &of(&[95.0])), 3);
+    }
+
+    #[test]
+    fn samples_are_split_at_the_ends_of_segments() {
+        let input = input(batches(), Vec::new());
+        let at = |text: &str| Sample {
+            time: time(text),
+            ..sample(0, 91.0)
+        };
+        let samples = [
+            at("2026-09-20T00:00:00Z"),
+            at("2026-10-03T20:00:00Z"),
+            at("2026-10-04T06:00:00Z"),
+            at("2026-11-20T00:00:00Z"),
+        ];
+        let counts = |from: usize| {
+            let split = input.split(from, &samples);
+            split.iter().map(|own| own.len()).collect::<Vec<usize>>()
+        };
+        assert_eq!(counts(0).iter().sum::<usize>(), samples.len());
+        assert_eq!(counts(1), counts(0)[1..]);
     }
 }

@@ -45,7 +45,7 @@ pub(super) async fn store_interference(
     )?;
     let found = findings.changes.iter();
     for found in found.filter(|found| found.change.cause == Cause::GnssInterference) {
-        let Some(place) = found.position else {
+        let Some(place) = found.change.position else {
             continue;
         };
         execute!(

@@ -3,26 +3,20 @@
 use super::disturbances::store_disturbances;
 use super::findings::Findings;
 use super::interference::store_interference;
+use super::segments::{self, NewSegment};
 use super::track::track;
 use crate::event_kinds;
 use crate::models::{self, ModelJson, StoredModel};
 use binnacle_compass::coverage::Coverage;
-use binnacle_compass::result::{
-    Analysis, Epoch, PredictionCoverage, ReferenceCheck, SailNext, SampleDiagnostic,
-};
-use binnacle_compass::time::Timestamp;
-use binnacle_platform::db::{Db, Tx, execute, row, rows};
-use binnacle_platform::error::{Error, Result};
+use binnacle_compass::result::{Analysis, Epoch, PredictionCoverage, ReferenceCheck, SailNext};
+use binnacle_platform::db::{Db, Tx, execute, row};
+use binnacle_platform::error::Result;
 use binnacle_platform::events::{self, Event};
 use binnacle_platform::ids::{CompassId, ModelId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use utoipa::ToSchema;
-
-/// Period of a stored row of samples, microseconds: 30 days.
-const CHUNK_MICROS: i64 = 30 * 86_400 * 1_000_000;
 
 /// Results of one compass's analysis.
 pub struct AnalysisResult {
@@ -32,8 +26,10 @@ pub struct AnalysisResult {
     pub compass_id: CompassId,
     /// Hash of the input.
     pub input_hash: String,
-    /// The analysis.
+    /// The analysis, with the samples of two months at least.
     pub analysis: Analysis,
+    /// Segments that were derived anew.
+    pub segments: Vec<NewSegment>,
     /// Headings and latitudes that its samples cover.
     pub covered: Covered,
     /// Findings that alerts rest on.
@@ -99,92 +95,7 @@ pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<C
     Ok(serde_json::from_str(&text)?)
 }
 
-/// Returns the rows with the diagnostics of a range of time, and some before and after it. Each is
-/// a JSON array.
-pub async fn chunks(
-    db: &Db,
-    vessel: VesselId,
-    compass: CompassId,
-    from: Option<Time>,
-    to: Option<Time>,
-) -> Result<Vec<String>> {
-    let found = rows!(
-        db,
-        (String,),
-        "SELECT samples FROM diagnostics
-         WHERE vessel_id = $1 AND compass_id = $2 AND chunk BETWEEN $3 AND $4
-         ORDER BY chunk",
-        vessel,
-        compass,
-        from.map_or(i64::MIN, number_of),
-        to.map_or(i64::MAX, number_of)
-    )?;
-    Ok(found.into_iter().map(|(samples,)| samples).collect())
-}
-
-/// A row of samples, with its period.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Chunk {
-    number: i64,
-    /// Its beginning, which is the beginning of a day.
-    pub from: Time,
-    /// The instant after its end.
-    pub to: Time,
-}
-
-/// Lists the rows that [`chunks`] returns, to be read one by one.
-pub async fn chunks_between(
-    db: &Db,
-    vessel: VesselId,
-    compass: CompassId,
-    from: Option<Time>,
-    to: Option<Time>,
-) -> Result<Vec<Chunk>> {
-    let found = rows!(
-        db,
-        (i64,),
-        "SELECT chunk FROM diagnostics
-         WHERE vessel_id = $1 AND compass_id = $2 AND chunk BETWEEN $3 AND $4
-         ORDER BY chunk",
-        vessel,
-        compass,
-        from.map_or(i64::MIN, number_of),
-        to.map_or(i64::MAX, number_of)
-    )?;
-    let begins = |number: i64| {
-        let begin = Timestamp::from_micros(number * CHUNK_MICROS).map_err(anyhow::Error::from);
-        Ok::<_, Error>(Time(begin?))
-    };
-    let chunk = |(number,): (i64,)| {
-        Ok(Chunk {
-            number,
-            from: begins(number)?,
-            to: begins(number + 1)?,
-        })
-    };
-    found.into_iter().map(chunk).collect()
-}
-
-/// Returns the samples of a row as a JSON array, empty if the row no longer exists.
-pub async fn chunk(db: &Db, vessel: VesselId, compass: CompassId, chunk: &Chunk) -> Result<String> {
-    let found = row!(
-        db,
-        (String,),
-        "SELECT samples FROM diagnostics
-         WHERE vessel_id = $1 AND compass_id = $2 AND chunk = $3
-         ORDER BY chunk",
-        vessel,
-        compass,
-        chunk.number
-    )?;
-    Ok(found.map_or_else(|| "[]".to_owned(), |(samples,)| samples))
-}
-
-fn number_of(time: Time) -> i64 {
-    time.0.micros().div_euclid(CHUNK_MICROS)
-}
-
-/// Stores a result in place of the previous one. A new model becomes the compass's next version.
+/// Stores a result in place of the previous one. A new model becomes the compass's current one.
 /// Returns an event if the model, or the withdrawal of the card, changed.
 pub async fn save(tx: &mut Tx, found: &AnalysisResult, now: Time) -> Result<Option<Event>> {
     let analysis = &found.analysis;
@@ -224,7 +135,7 @@ pub async fn save(tx: &mut Tx, found: &AnalysisResult, now: Time) -> Result<Opti
             .map(|withdrawn| withdrawn.reason.as_str()),
         serde_json::to_string(&track(&analysis.samples))?
     )?;
-    save_diagnostics(tx, found).await?;
+    segments::save(tx, found.vessel_id, found.compass_id, &found.segments).await?;
     let (vessel, compass) = (found.vessel_id, found.compass_id);
     store_disturbances(tx, vessel, compass, &found.findings, now).await?;
     store_interference(tx, vessel, compass, &found.findings).await?;
@@ -242,7 +153,7 @@ pub async fn save(tx: &mut Tx, found: &AnalysisResult, now: Time) -> Result<Opti
         let event = events::insert(tx, found.vessel_id, event_kinds::MODEL, now).await?;
         return Ok(Some(event));
     };
-    models::insert(tx, &model).await?;
+    models::insert_analysed(tx, &model).await?;
     let event = events::insert(tx, found.vessel_id, event_kinds::MODEL, now).await?;
     Ok(Some(event))
 }
@@ -267,34 +178,6 @@ fn begun_by(epoch: &Epoch) -> Result<Option<String>> {
         (None, found) => serde_json::to_value(found)?,
     };
     Ok(word.as_str().map(str::to_owned))
-}
-
-async fn save_diagnostics(tx: &mut Tx, found: &AnalysisResult) -> Result<()> {
-    execute!(
-        &mut *tx,
-        "DELETE FROM diagnostics WHERE vessel_id = $1 AND compass_id = $2",
-        found.vessel_id,
-        found.compass_id
-    )?;
-    let mut chunks: BTreeMap<i64, Vec<&SampleDiagnostic>> = BTreeMap::new();
-    for sample in &found.analysis.samples {
-        chunks
-            .entry(number_of(Time(sample.sample.time)))
-            .or_default()
-            .push(sample);
-    }
-    for (chunk, samples) in chunks {
-        execute!(
-            &mut *tx,
-            "INSERT INTO diagnostics (vessel_id, compass_id, chunk, samples)
-             VALUES ($1, $2, $3, $4)",
-            found.vessel_id,
-            found.compass_id,
-            chunk,
-            serde_json::to_string(&samples)?
-        )?;
-    }
-    Ok(())
 }
 
 /// Returns the current epoch's model as a row, or `None` if it was refused.
@@ -329,6 +212,7 @@ fn next_model(found: &AnalysisResult, now: Time) -> Result<Option<StoredModel>> 
         h_nt: place.h_nt,
         z_nt: place.z_nt,
         model: ModelJson(model),
+        sent_at: None,
         foretold_by: None,
     }))
 }

@@ -122,6 +122,11 @@ pub(super) async fn answer(
         Some(model) if !should_send(app, &model, state.card.as_deref()).await? => None,
         current => current,
     };
+    if let Some(model) = newer.as_ref().filter(|model| model.sent_at.is_none()) {
+        let mut tx = app.db.begin().await?;
+        models::note_sent(&mut tx, model, app.clock.now().into()).await?;
+        tx.commit().await?;
+    }
     let settings = settings::find(&app.db, agent.vessel_id).await?.agent;
     let downlink = Downlink {
         contiguous_seq: contiguous_seq as u64,

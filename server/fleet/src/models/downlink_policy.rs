@@ -123,6 +123,7 @@ mod tests {
             lat: 48.0,
             lon: -6.0,
             variation_deg: -2.0,
+            sent_at: None,
             foretold_by: None,
             h_nt: 20_000.0,
             z_nt: 43_000.0,

@@ -2,7 +2,7 @@
 //!
 //! An entry without an end may exclude all of them.
 
-use binnacle_compass::result::{Analysis, SampleReason};
+use binnacle_compass::result::Analysis;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use utoipa::ToSchema;
@@ -21,18 +21,11 @@ pub struct LeftOut {
 impl LeftOut {
     /// Counts the samples that an analysis left out.
     pub fn from_analysis(analysis: &Analysis) -> LeftOut {
-        let from = analysis.current_epoch().and_then(|epoch| epoch.from);
-        let samples = analysis.samples.iter();
-        let current = samples.filter(|s| from.is_none_or(|from| s.sample.time >= from));
-        let mut left_out = LeftOut::default();
-        for sample in current {
-            match sample.reason {
-                Some(SampleReason::MagneticCargo) => left_out.magnetic_cargo += 1,
-                Some(SampleReason::Berth) => left_out.berth += 1,
-                _ => {}
-            }
-        }
-        left_out
+        let epoch = analysis.current_epoch();
+        epoch.map_or_else(LeftOut::default, |epoch| LeftOut {
+            magnetic_cargo: epoch.left_out_laden,
+            berth: epoch.left_out_alongside,
+        })
     }
 
     /// Tells whether there are any.

@@ -1,7 +1,8 @@
 //! Models of a vessel's compasses.
 //!
-//! Invariants: every version is kept, and the highest is current. A compass has no current model
-//! after a change has ended its epoch, until the next model.
+//! Invariants: the highest version is current. An earlier one is kept if anyone could notice its
+//! difference from the one before, or the ship has it. A compass has no current model after a
+//! change has ended its epoch, until the next model.
 
 mod downlink_policy;
 mod left_out;
@@ -14,7 +15,7 @@ pub use missing::{NoModel, NoModelFields};
 pub use model_json::ModelJson;
 pub use store::{
     StoredModel, card_withdrawn, card_withdrawn_in, current, current_of_fleet, current_of_vessel,
-    find_prediction, find_version, insert, list_in_force, list_recent,
+    find_prediction, find_version, insert, insert_analysed, list_in_force, list_recent, note_sent,
 };
 
 use crate::compasses::{self, WhichCompass};

@@ -31,6 +31,7 @@ pub struct StoredModel {
     #[sqlx(try_from = "String")]
     pub model: ModelJson,
     pub foretold_by: Option<OrderId>,
+    pub sent_at: Option<Time>,
 }
 
 /// Returns the current model of a compass; `None` while its card is withdrawn.
@@ -149,7 +150,8 @@ pub async fn list_in_force(
     )
 }
 
-/// Finds a model of a compass by its version.
+/// Finds a model of a compass by its version, or the version kept before it: nobody could notice
+/// their difference.
 pub async fn find_version(
     db: &Db,
     vessel: VesselId,
@@ -160,8 +162,9 @@ pub async fn find_version(
         db,
         StoredModel,
         "SELECT * FROM models
-         WHERE vessel_id = $1 AND compass_id = $2 AND version = $3
-         ORDER BY version",
+         WHERE vessel_id = $1 AND compass_id = $2 AND version <= $3
+         ORDER BY version DESC
+         LIMIT 1",
         vessel,
         compass,
         version
@@ -240,6 +243,48 @@ pub async fn find_prediction(
         vessel,
         compass
     )
+}
+
+/// Stores the model of an analysis as the next version. The last one goes if it is kept for
+/// nothing: nobody could notice its difference from the one before, and the ship never had it. Its
+/// number is not used again.
+pub async fn insert_analysed(tx: &mut Tx, model: &StoredModel) -> Result<()> {
+    let known = rows!(
+        in &mut *tx,
+        StoredModel,
+        "SELECT * FROM models
+         WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY version DESC
+         LIMIT 2",
+        model.vessel_id,
+        model.compass_id
+    )?;
+    insert(tx, model).await?;
+    if let [last, before] = &known[..]
+        && last.sent_at.is_none()
+        && last.foretold_by.is_none()
+        && !last.is_update_of(before)
+    {
+        execute!(
+            &mut *tx,
+            "DELETE FROM models WHERE vessel_id = $1 AND id = $2",
+            last.vessel_id,
+            last.id
+        )?;
+    }
+    Ok(())
+}
+
+/// Notes that a model was sent to the ship.
+pub async fn note_sent(tx: &mut Tx, model: &StoredModel, now: Time) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE models SET sent_at = $3 WHERE vessel_id = $1 AND id = $2 AND sent_at IS NULL",
+        model.vessel_id,
+        model.id,
+        now
+    )?;
+    Ok(())
 }
 
 /// Stores a model as the compass's next version. Ignores its `version`.

@@ -151,17 +151,5 @@ async fn find(
     let compass = compasses::find(&app.db, id, range.compass).await?;
     let from = time("from", range.from.as_deref())?.map(Time);
     let to = time("to", range.to.as_deref())?.map(Time);
-    let chunks = analysis::chunks(&app.db, id, compass.id, from, to).await?;
-    let parsed = tokio::task::spawn_blocking(move || {
-        let mut samples: Vec<SampleDiagnostic> = Vec::new();
-        for chunk in &chunks {
-            samples.extend(serde_json::from_str::<Vec<SampleDiagnostic>>(chunk)?);
-        }
-        samples.retain(|found| {
-            let at = Time(found.sample.time);
-            from.is_none_or(|from| at >= from) && to.is_none_or(|to| at < to)
-        });
-        Ok::<_, Error>(samples)
-    });
-    parsed.await?
+    analysis::samples(&app.db, id, compass.id, from, to).await
 }

@@ -171,21 +171,19 @@ async fn waters(
     compass: CompassId,
     berth: EarthField,
 ) -> Result<Vec<Water>> {
-    let chunks = analysis::chunks(&app.db, vessel, compass, None, None).await?;
+    let samples = analysis::samples(&app.db, vessel, compass, None, None).await?;
     let read = tokio::task::spawn_blocking(move || {
         let mut cells: BTreeMap<(i64, i64), Vec<SampleDiagnostic>> = BTreeMap::new();
-        for chunk in &chunks {
-            for sample in serde_json::from_str::<Vec<SampleDiagnostic>>(chunk)? {
-                if let (Some(h_nt), Some(z_nt)) = (sample.h_nt, sample.z_nt) {
-                    let cell = |value: f64, size: f64| (value / size).round() as i64;
-                    let key = (cell(h_nt, CELL_NT.0), cell(z_nt, CELL_NT.1));
-                    cells.entry(key).or_default().push(sample);
-                }
+        for sample in samples {
+            if let (Some(h_nt), Some(z_nt)) = (sample.h_nt, sample.z_nt) {
+                let cell = |value: f64, size: f64| (value / size).round() as i64;
+                let key = (cell(h_nt, CELL_NT.0), cell(z_nt, CELL_NT.1));
+                cells.entry(key).or_default().push(sample);
             }
         }
-        Ok::<_, serde_json::Error>(cells.values().filter_map(|found| water(found)).collect())
+        cells.values().filter_map(|found| water(found)).collect()
     });
-    let mut waters: Vec<Water> = read.await??;
+    let mut waters: Vec<Water> = read.await?;
     waters.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     waters.truncate(MAX_WATERS);
     disambiguate_names(&mut waters);

@@ -9,7 +9,6 @@ use crate::work_orders::refusal::{Cure, Refusal};
 use crate::work_orders::summary::Summary;
 use binnacle_adjustment::adjust::ReadingForm;
 use binnacle_compass::position::Position;
-use binnacle_compass::result::SampleDiagnostic;
 use binnacle_fleet::analysis;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
@@ -58,7 +57,7 @@ pub(crate) async fn check_position(
         return Ok(Some(refusal(words)));
     }
     let around = [-TRACK_WINDOW_S, TRACK_WINDOW_S].map(|s| Some(Time(given.at.plus_seconds(s))));
-    let chunks = analysis::chunks(
+    let samples = analysis::samples(
         &app.db,
         summary.vessel_id,
         summary.compass_id,
@@ -67,12 +66,10 @@ pub(crate) async fn check_position(
     )
     .await?;
     let mut nearest: Option<(f64, Position)> = None;
-    for chunk in &chunks {
-        for found in serde_json::from_str::<Vec<SampleDiagnostic>>(chunk)? {
-            let apart_s = given.at.seconds_since(found.sample.time).abs();
-            if nearest.is_none_or(|(least_s, _)| apart_s < least_s) {
-                nearest = Some((apart_s, found.sample.position));
-            }
+    for found in samples {
+        let apart_s = given.at.seconds_since(found.sample.time).abs();
+        if nearest.is_none_or(|(least_s, _)| apart_s < least_s) {
+            nearest = Some((apart_s, found.sample.position));
         }
     }
     Ok(nearest

@@ -127,6 +127,7 @@ pub(crate) async fn complete(
         h_nt: basis.h_nt,
         z_nt: basis.z_nt,
         model: ModelJson(completed.model_after.clone()),
+        sent_at: None,
         foretold_by: Some(change.stored.summary.id),
     };
     models::insert(&mut change.tx, &model).await?;

@@ -82,7 +82,19 @@ impl SeaVerification {
     }
 }
 
-/// Compares a compass's samples with the prediction of its last adjustment.
+/// Returns the time of a compass's last adjustment, if headings at sea are still awaited.
+pub async fn awaited_since(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<Time>> {
+    let last = store::find_last_completed(tx, vessel, compass).await?;
+    Ok(last
+        .filter(|(_, state, _)| *state == State::Adjusted)
+        .map(|(_, _, completed_at)| completed_at))
+}
+
+/// Compares a compass's samples since its last adjustment with the prediction.
 pub async fn after_analysis(
     tx: &mut Tx,
     vessel: VesselId,

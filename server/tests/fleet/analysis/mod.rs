@@ -1,6 +1,7 @@
 //! Analysis: from batches to models.
 
 mod jobs;
+mod segments;
 
 use crate::run;
 use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading, wrap_180};

@@ -1,5 +1,6 @@
 //! A whole order, from the berth to the verification at sea.
 
+use binnacle_compass::sample::Sample;
 use binnacle_server_testing::alerts;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::work_orders::{
@@ -9,10 +10,12 @@ use binnacle_server_testing::{
     TestServer, days_at_sea, days_in_waters, model_after_step, position, true_model,
 };
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 
 on_both!(
     a_completed_order_gives_a_predicted_model,
     headings_at_sea_verify_an_adjustment,
+    headings_months_apart_verify_an_adjustment,
     a_disagreeing_heading_at_sea_raises_an_alert,
     an_adjustment_after_a_failed_verification_resolves_it_on_its_day,
     another_orders_adjustment_resolves_a_failed_verification,
@@ -109,6 +112,47 @@ async fn headings_at_sea_verify_an_adjustment(server: TestServer) {
     assert_eq!(
         (&closed["state"], &closed["standing"]),
         (&json!("closed"), &json!("verified at sea"))
+    );
+    server.finish().await;
+}
+
+/// A ship that is laid up half-way, but for one heading a month.
+async fn headings_months_apart_verify_an_adjustment(server: TestServer) {
+    let mut job = Job::begin(&server).await;
+    let ship = predicted_model(&job.complete().await);
+    let easterly = |sample: &Sample| sample.compass.degrees() < 180.0;
+    let six_days = |from: &str| days_at_sea(&ship, from, 6.0);
+    let (east, _): (Vec<Sample>, Vec<Sample>) = six_days("2026-11-21T12:00:00Z")
+        .into_iter()
+        .partition(easterly);
+    job.send(&server, 2, &east, 6.5).await;
+    let mut seq = 3;
+    for from in ["2026-12-28", "2027-01-28", "2027-02-28", "2027-03-28"] {
+        let watch = days_at_sea(&ship, &format!("{from}T12:00:00Z"), 0.125);
+        job.send(&server, seq, &watch, 31.0).await;
+        seq += 1;
+    }
+    let some = job.view_order().await;
+    assert_eq!(some["state"], "adjusted", "{}", some["verification"]);
+    let (_, west): (Vec<Sample>, Vec<Sample>) = six_days("2027-04-10T12:00:00Z")
+        .into_iter()
+        .partition(easterly);
+    job.send(&server, seq, &west, 19.0).await;
+    let more = job.view_order().await;
+    assert_eq!(more["state"], "verified", "{}", more["verification"]);
+    let headings = &more["verification"]["verification"]["headings"];
+    let sectors = |samples: &[Sample]| {
+        let sector = |sample: &Sample| (sample.compass.degrees() / 15.0).round() as usize % 24;
+        samples
+            .iter()
+            .map(sector)
+            .collect::<BTreeSet<usize>>()
+            .len()
+    };
+    assert!(
+        headings.as_u64().unwrap() as usize > sectors(&west),
+        "{}",
+        more["verification"]
     );
     server.finish().await;
 }

@@ -71,7 +71,7 @@ fn interference(detected: &DetectedChange<'_>) -> Option<Condition> {
         return None;
     }
     let since = Time(change.from);
-    let place = detected.found.position.map_or(String::new(), near);
+    let place = detected.found.change.position.map_or(String::new(), near);
     Some(Condition {
         since,
         window: EventWindow::exactly(since),

@@ -7,11 +7,10 @@
 //!   for the place where it was found.
 //! - Ships mostly return to the same waters: those of the last weeks stand for those to come.
 
-use binnacle_compass::angle::{CompassHeading, wrap_180};
+use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::model::Model;
-use binnacle_compass::position::Position;
-use binnacle_compass::result::{Analysis, Cause, Change, SampleReason};
+use binnacle_compass::result::{Analysis, Cause, Change};
 use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -47,9 +46,6 @@ pub struct ChangeFinding {
     /// Its effect on the waters of the last sixty days, which stand for those to come.
     #[serde(default)]
     pub size_ahead_deg: Option<f64>,
-    /// Approximate place of the ship while a passing disturbance lasted.
-    #[serde(default)]
-    pub position: Option<Position>,
 }
 
 /// Returns the changes that an analysis found.
@@ -66,7 +62,6 @@ fn found(change: &Change, analysis: &Analysis, logbook: &[LogbookEntry]) -> Chan
     // Neither a disturbance nor a reference begins an epoch, even at the same time.
     let is_boundary = change.confirmed && change.cause.changes_deviation();
     let epoch = Some(change.from).filter(|_| is_boundary).and_then(begun_at);
-    let disturbed = DisturbedSamples::by(change, analysis);
     let sides = epoch.and_then(|after| {
         let before = epochs.get(after.checked_sub(1)?)?.model.as_ref()?;
         Some((before, epochs[after].model.as_ref()?))
@@ -91,9 +86,8 @@ fn found(change: &Change, analysis: &Analysis, logbook: &[LogbookEntry]) -> Chan
         expected: change.cause == Cause::AdjustmentOrRepair && is_reported(change, logbook),
         size_deg: size_here_deg
             .or(change.deviation_change_deg.map(f64::abs))
-            .or(disturbed.most_deg),
+            .or(change.disturbed_deg),
         size_ahead_deg,
-        position: disturbed.position,
         change: change.clone(),
     }
 }
@@ -140,54 +134,6 @@ fn difference_deg(before: &Model, after: &Model, earth: EarthField) -> Option<f6
         Some((deviation_deg(after, compass)? - deviation_deg(before, compass)?).abs())
     });
     differences.reduce(f64::max)
-}
-
-/// Samples within a passing disturbance.
-#[derive(Default)]
-struct DisturbedSamples {
-    position: Option<Position>,
-    /// Their greatest departure from the model, degrees.
-    most_deg: Option<f64>,
-}
-
-impl DisturbedSamples {
-    fn by(change: &Change, analysis: &Analysis) -> DisturbedSamples {
-        let is_gnss = change.cause == Cause::GnssInterference;
-        if !(change.cause.is_transient() || is_gnss) {
-            return DisturbedSamples::default();
-        }
-        let last = change.ended.or(analysis.data_until);
-        let within = |time| change.from <= time && last.is_none_or(|last| time <= last);
-        let disturbed: Vec<_> = analysis
-            .samples
-            .iter()
-            .filter(|s| within(s.sample.time))
-            .filter(|s| match s.reason {
-                Some(SampleReason::GnssInterference) => is_gnss,
-                Some(SampleReason::Disturbance) => !is_gnss,
-                _ => change.is_weak_transient(),
-            })
-            .collect();
-        let magnetic = disturbed.iter().filter(|_| !is_gnss);
-        let departed = magnetic.filter_map(|s| {
-            let earth = EarthField {
-                h_nt: s.h_nt?,
-                z_nt: s.z_nt?,
-            };
-            let epoch = analysis.epochs.iter().rev();
-            let mut begun =
-                epoch.filter(|epoch| epoch.from.is_none_or(|from| from <= s.sample.time));
-            let model = begun.next()?.model.as_ref()?;
-            let expected = model.deviation(s.sample.compass, earth).ok()?;
-            Some(wrap_180(s.deviation_deg? - expected.deviation.degrees_east()).abs())
-        });
-        DisturbedSamples {
-            most_deg: departed.reduce(f64::max),
-            position: disturbed
-                .get(disturbed.len() / 2)
-                .map(|s| s.sample.position),
-        }
-    }
 }
 
 #[cfg(test)]

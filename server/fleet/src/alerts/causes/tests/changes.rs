@@ -44,7 +44,6 @@ fn found(cause: Found, size_deg: f64) -> ChangeFinding {
         expected: false,
         size_deg: Some(size_deg),
         size_ahead_deg: None,
-        position: None,
     }
 }
 

@@ -1,5 +1,7 @@
 //! Analysis worker: takes jobs from the queue, one after the other.
 
+mod fold;
+
 use binnacle_analysis::advice::sail_next;
 use binnacle_fleet::analysis::Findings;
 use binnacle_fleet::analysis::{AnalysisResult, Covered, input, store};
@@ -11,7 +13,7 @@ use binnacle_platform::events;
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_priors::{self as priors, VesselPrior};
-use binnacle_tracking::analyse;
+use fold::Folded;
 use metrics::{counter, histogram};
 use std::convert::Infallible;
 use std::time::{Duration, Instant};
@@ -118,7 +120,7 @@ async fn work(app: &App, job: analysis_queue::Job) -> Result<usize> {
     for compass in &compasses {
         let stored = input::load(&app.db, job.vessel_id, compass.id, now.0).await?;
         next_entry_at = next_entry_at.into_iter().chain(stored.next_entry_at).min();
-        if stored.is_empty() {
+        if stored.segments.is_empty() {
             continue;
         }
         let prior = priors::find_or_choose(&app.db, job.vessel_id, compass.id, now).await?;
@@ -166,33 +168,34 @@ async fn analyse_compass(
     prior: VesselPrior,
 ) -> Result<Option<AnalysisResult>> {
     let last_hash = store::last_hash(&app.db, vessel_id, compass_id).await?;
-    let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<AnalysisResult>> {
-        let input = stored.decode(prior.text_from_fleet().map(str::to_owned))?;
-        let input_hash = input::input_hash(&input)?;
-        if input.samples.is_empty() || last_hash.as_ref() == Some(&input_hash) {
-            return Ok(None);
-        }
-        let analysis = analyse(&binnacle_tracking::Input {
-            samples: &input.samples,
-            logbook: &input.logbook,
-            azimuths: &input.azimuths,
-            prior: &prior.prior,
-            settings: input.settings,
-        });
+    let logbook = stored.logbook.clone();
+    let mut tx = app.db.begin().await?;
+    let unverified = verification::awaited_since(&mut tx, vessel_id, compass_id).await?;
+    tx.commit().await?;
+    let db = &app.db;
+    let from = unverified.map(|since| since.0);
+    let folded = fold::fold(db, vessel_id, compass_id, stored, prior, last_hash, from).await?;
+    let found = match folded {
+        Folded::New(found) => *found,
+        Folded::Unchanged => return Ok(None),
+    };
+    let summary = tokio::task::spawn_blocking(move || {
+        let analysis = &found.analysis;
         let covered = Covered {
             coverage: analysis.coverage.clone(),
-            sail_next: sail_next(&analysis),
+            sail_next: sail_next(analysis),
             references: analysis.current_epoch().and_then(|epoch| epoch.references),
             predictions: analysis.predictions,
         };
-        Ok(Some(AnalysisResult {
+        AnalysisResult {
             vessel_id,
             compass_id,
-            input_hash,
-            findings: Findings::from_analysis(&analysis, &input.logbook),
-            analysis,
+            input_hash: found.input_hash,
+            findings: Findings::from_analysis(analysis, &logbook),
             covered,
-        }))
+            analysis: found.analysis,
+            segments: found.segments,
+        }
     });
-    Ok(found.await??)
+    Ok(Some(summary.await?))
 }
