@@ -42,6 +42,9 @@ pub(crate) const DAY_ROWS: usize = 24 * HOUR_ROWS;
 pub(crate) const WEEK_ROWS: usize = 7 * DAY_ROWS;
 /// Rows among which an event may be supposed: three days. Study.
 pub(crate) const KEPT_ROWS: usize = 3 * DAY_ROWS;
+/// Rows between the checkpoints of a kept state. Assumed: six hours, within which two events are
+/// one.
+pub(crate) const KEPT_CHECKPOINT_ROWS: usize = 6 * HOUR_ROWS;
 /// Rows between looks for events. Study.
 pub(crate) const LOOK_ROWS: usize = 2;
 /// Time within which two events of a kind, or an event and the logbook's word of it, are one,

@@ -73,7 +73,7 @@ pub(super) fn record_outcome(
     let band = predicted.standard_error_deg.unwrap_or(0.0);
     let by_h = USUAL_H_NT / earth.h_nt;
     let variance = band * band + noise.row_variance() * by_h.max(1.0).powi(2);
-    let weight = weight(row.z_squared.min(residual_deg * residual_deg / variance));
+    let weight = weight(f64::from(row.z_squared).min(residual_deg * residual_deg / variance));
     let diagnostic = &mut reading.diagnostic;
     diagnostic.predicted_deg = Some(predicted_deg);
     diagnostic.residual_deg = Some(residual_deg);

@@ -4,8 +4,9 @@ use super::analysis::{Report, covered};
 use super::by_course::CourseUse;
 use super::epochs::judged;
 use super::input::{Input, Part};
+use super::kept::{SettledReading, keep_some};
 use super::marked_readings::MarkedReadings;
-use super::past::{Piece, SettledEvent, SettledReading, keep_some};
+use super::past::{Piece, SettledEvent};
 use super::row_times::RowTime;
 use super::voyage::Voyage;
 use binnacle_compass::logbook::LogbookEntry;
@@ -55,9 +56,8 @@ impl Voyage {
     /// of time: those of all samples but the last month's, which later ones may change.
     pub fn advance(&mut self, part: &Part<'_>) -> Vec<SampleDiagnostic> {
         let marked = self.read_part(part);
-        // A state is kept by half of each matrix.
-        self.tracker.make_symmetric();
-        self.predictions.make_symmetric();
+        self.tracker.condense();
+        self.predictions.round();
         self.settle(marked, &part.logbook)
     }
 

@@ -1,14 +1,21 @@
 //! Records of a voyage, and the forms in which they are kept.
 
 use crate::state_space::ship_state::ShipState;
-use binnacle_analysis::readings::reading::Reading;
+use binnacle_analysis::readings::reading::{Reading, readings};
 use binnacle_compass::angle::{CompassHeading, CourseOverGround, TrueHeading};
 use binnacle_compass::logbook::LogbookKind;
+use binnacle_compass::model::ReferenceGrade;
 use binnacle_compass::position::Position;
 use binnacle_compass::result::SampleReason;
 use binnacle_compass::sample::{Sample, SourceId};
+use binnacle_compass::settings::AnalysisSettings;
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
+
+/// Shortest slot, microseconds: an hour, within which rows share their slow errors.
+const SLOT_MICROS: i64 = 3600 * 1_000_000;
+/// Greatest number of readings: several for each unknown of the checks in every sea of a year.
+const ENOUGH: usize = 256;
 
 /// Sample with the reason against its use that its own part of the voyage gave.
 #[derive(Clone, Copy, Serialize, Deserialize)]
@@ -27,14 +34,72 @@ impl KeptReading {
     }
 }
 
+/// Settled reading with its outcome.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+pub(super) struct SettledReading {
+    kept: KeptReading,
+    deviation_deg: Option<f64>,
+}
+
+impl SettledReading {
+    pub(super) fn of(reading: &Reading) -> SettledReading {
+        SettledReading {
+            kept: KeptReading::of(reading),
+            deviation_deg: reading.diagnostic.deviation_deg,
+        }
+    }
+
+    pub(super) fn time(&self) -> Timestamp {
+        self.kept.sample.time
+    }
+}
+
+/// Returns settled readings as they were.
+pub(super) fn settled_readings(
+    settled: &[SettledReading],
+    settings: &AnalysisSettings,
+    grade: ReferenceGrade,
+) -> Vec<Reading> {
+    let samples: Vec<Sample> = settled.iter().map(|settled| settled.kept.sample).collect();
+    let mut readings = readings(&samples, &[], settings, grade);
+    for (reading, settled) in readings.iter_mut().zip(settled) {
+        reading.diagnostic.reason = settled.kept.reason;
+        reading.diagnostic.deviation_deg = settled.deviation_deg;
+    }
+    readings
+}
+
+/// Keeps the first item of each slot of time, of items in order of time. Slots are an hour,
+/// doubled until there are few.
+pub(super) fn keep_some<T>(items: &mut Vec<T>, time: impl Fn(&T) -> Timestamp) {
+    let mut slots = 1;
+    loop {
+        let slot = |item: &T| time(item).micros().div_euclid(SLOT_MICROS);
+        items.retain(|item| slot(item) % slots == 0);
+        items.dedup_by_key(|item| slot(item));
+        if items.len() <= ENOUGH {
+            return;
+        }
+        slots *= 2;
+    }
+}
+
+/// Returns true if a reading with an outcome is offered to the model.
+pub(super) fn is_offered(outcome: Option<SampleReason>) -> bool {
+    matches!(
+        outcome,
+        None | Some(SampleReason::Outlier | SampleReason::NoModel)
+    )
+}
+
 /// Row that was read.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub(crate) struct TrackedRow {
     /// Place among the readings that are kept.
     pub(super) place: usize,
     /// Innovation, degrees, and its square in standard deviations.
-    pub(super) innovation_deg: f64,
-    pub(super) z_squared: f64,
+    pub(super) innovation_deg: f32,
+    pub(super) z_squared: f32,
     /// True if the vessel was in port since the row before.
     pub(super) after_port: bool,
 }

@@ -62,8 +62,8 @@ impl MarkedReadings {
         readings.map(|reading| reading.diagnostic.reason).collect()
     }
 
-    /// Returns the place of the first reading from a time on, or the beginning of a stay or fault
-    /// that goes on then, if that is no earlier than another time.
+    /// Returns the place of the first reading from a time on, or that of the reading before a stay
+    /// or fault that goes on then, if it began no earlier than another time.
     pub(super) fn place(&self, from: Timestamp, earliest: Timestamp) -> usize {
         let time = |place: usize| self.readings[place].sample().time;
         let stays = self.stays.iter();
@@ -78,7 +78,9 @@ impl MarkedReadings {
                 begin = from;
             }
         }
-        self.readings.partition_point(|r| r.sample().time < begin)
+        let place = self.readings.partition_point(|r| r.sample().time < begin);
+        // What a stay changed shows against the reading before it.
+        place.saturating_sub(usize::from(begin < from))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Comparison of the references in each epoch of the logbook, and the deviation by them.
 
 use super::faults::Trust;
-use super::past::{is_offered, keep_some};
+use super::kept::{is_offered, keep_some};
 use crate::state_space::scalar::GYRO_SHARE;
 use binnacle_analysis::fit::{HeadingReading, check_references, compare_references};
 use binnacle_analysis::readings::reading::{Reading, heading_reading};

@@ -2,9 +2,9 @@
 
 use super::epochs::NEEDED_SAMPLES;
 use super::input::Part;
-use super::kept::{KeptReading, LoggedWork, TrackedRow};
+use super::kept::{KeptReading, LoggedWork, TrackedRow, settled_readings};
 use super::marked_readings::MarkedReadings;
-use super::past::{Past, settled_readings};
+use super::past::Past;
 use super::predictions::WatchPredictions;
 use super::row_times::RowTime;
 use crate::state_space::row::Placed;
@@ -239,8 +239,8 @@ impl Voyage {
         }
         Some(TrackedRow {
             place,
-            innovation_deg: tracked.read.deviation.value,
-            z_squared: tracked.read.deviation.z_squared(),
+            innovation_deg: tracked.read.deviation.value as f32,
+            z_squared: tracked.read.deviation.z_squared() as f32,
             after_port: tracked.row.after_port,
         })
     }

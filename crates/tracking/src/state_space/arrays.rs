@@ -1,4 +1,4 @@
-//! Forms in which arrays of states are kept: plain sequences of numbers.
+//! Forms in which arrays of states are kept: plain sequences of numbers, in single precision.
 
 use super::states::STATES;
 use serde::de::Error;
@@ -12,16 +12,17 @@ pub(crate) mod vector {
         values: &[f64; STATES],
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
-        values.as_slice().serialize(serializer)
+        values.map(|x| x as f32).as_slice().serialize(serializer)
     }
 
     pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<[f64; STATES], D::Error> {
-        let values = Vec::<f64>::deserialize(deserializer)?;
+        let values = Vec::<f32>::deserialize(deserializer)?;
         let count = values.len();
+        let values = <[f32; STATES]>::try_from(values);
         values
-            .try_into()
+            .map(|values| values.map(f64::from))
             .map_err(|_| D::Error::invalid_length(count, &"as many numbers as there are states"))
     }
 }
@@ -35,13 +36,14 @@ pub(crate) mod matrix {
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
         let upper = rows.iter().enumerate().flat_map(|(i, row)| &row[i..]);
-        upper.copied().collect::<Vec<f64>>().serialize(serializer)
+        let upper = upper.map(|x| *x as f32);
+        upper.collect::<Vec<f32>>().serialize(serializer)
     }
 
     pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Box<[[f64; STATES]; STATES]>, D::Error> {
-        let values = Vec::<f64>::deserialize(deserializer)?;
+        let values = Vec::<f32>::deserialize(deserializer)?;
         if values.len() != STATES * (STATES + 1) / 2 {
             let expected = &"half a row of numbers for each state";
             return Err(D::Error::invalid_length(values.len(), expected));
@@ -50,8 +52,8 @@ pub(crate) mod matrix {
         let mut values = values.into_iter();
         for i in 0..STATES {
             for (j, value) in (i..STATES).zip(&mut values) {
-                rows[i][j] = value;
-                rows[j][i] = value;
+                rows[i][j] = f64::from(value);
+                rows[j][i] = f64::from(value);
             }
         }
         Ok(rows)

@@ -7,6 +7,10 @@ use super::transition::{Gain, Pair, Transition};
 use binnacle_analysis::estimate::{heavy_tailed_loss, weight};
 use serde::{Deserialize, Serialize};
 
+/// Factor of the variances when a covariance is rounded: each of the other states may take half a
+/// step of single precision (Gershgorin).
+const ROUNDED: f64 = 1.0 + STATES as f64 * f32::EPSILON as f64;
+
 /// Mean and covariance of the states, and the log likelihood of what was read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Filter {
@@ -53,10 +57,15 @@ impl Filter {
         }
     }
 
-    /// Makes the covariance symmetric to the last bit, which arithmetic does not keep it.
-    pub(crate) fn make_symmetric(&mut self) {
+    /// Rounds mean and covariance to what is kept of them: single precision, by half of the
+    /// matrix. The variances are raised by more than the rounding of all else can take.
+    pub(crate) fn round(&mut self) {
+        let single = |x: f64| f64::from(x as f32);
+        self.mean = self.mean.map(single);
         for i in 0..STATES {
+            self.covariance[i][i] = single(self.covariance[i][i] * ROUNDED);
             for j in 0..i {
+                self.covariance[j][i] = single(self.covariance[j][i]);
                 self.covariance[i][j] = self.covariance[j][i];
             }
         }
@@ -219,5 +228,27 @@ impl Marginal {
             mean: states.iter().map(|i| filter.mean[*i]).collect(),
             covariance: states.iter().map(|i| row(*i)).collect(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DMatrix;
+
+    #[test]
+    fn the_rounded_covariance_of_states_that_are_nearly_one_is_still_positive() {
+        let mut filter = Filter::new(&[0.1; STATES], &[1e-5; STATES]);
+        for row in filter.covariance.iter_mut() {
+            for x in row {
+                *x += 0.3;
+            }
+        }
+        filter.round();
+        let rounded = DMatrix::from_fn(STATES, STATES, |i, j| filter.covariance[i][j]);
+        assert_eq!(rounded, rounded.transpose());
+        assert!(rounded.cholesky().is_some());
+        let kept = postcard::to_allocvec(&filter).unwrap();
+        assert_eq!(postcard::from_bytes::<Filter>(&kept).unwrap(), filter);
     }
 }

@@ -45,10 +45,10 @@ impl Learning {
         &self.levels
     }
 
-    /// Makes the covariances beside the lead's symmetric to the last bit.
-    pub(crate) fn make_symmetric(&mut self) {
+    /// Rounds the filters beside the lead's to what is kept of them.
+    pub(crate) fn round(&mut self) {
         for hypothesis in &mut self.nudged {
-            hypothesis.filter.make_symmetric();
+            hypothesis.filter.round();
         }
     }
 

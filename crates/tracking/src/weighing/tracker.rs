@@ -4,7 +4,8 @@ use super::evidence_sums::EvidenceSums;
 use super::learning::Learning;
 use super::records::{Checkpoint, Detected, Tried};
 use crate::constants::{
-    ALTERNATIVES, CERTAIN, DAY_ROWS, HOUR_ROWS, KEPT_ROWS, LOOK_ROWS, NEGLIGIBLE, SAME_S, UNCERTAIN,
+    ALTERNATIVES, CERTAIN, DAY_ROWS, HOUR_ROWS, KEPT_CHECKPOINT_ROWS, KEPT_ROWS, LOOK_ROWS,
+    NEGLIGIBLE, SAME_S, UNCERTAIN,
 };
 use crate::hypotheses::hypothesis::{Begin, Hypothesis, Read};
 use crate::hypotheses::kinds::{Kind, Stay};
@@ -270,14 +271,27 @@ impl Tracker {
         weights.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Makes all covariances symmetric to the last bit, as they are kept.
-    pub(crate) fn make_symmetric(&mut self) {
+    /// Gives up what a kept state need not have: accounts that change no result, and checkpoints
+    /// closer together than an event is dated by later rows. Rounds all filters to what is kept.
+    pub(crate) fn condense(&mut self) {
+        let best = self.best();
+        let lead = self.bank.first().map(Hypothesis::log_weight);
+        self.bank.retain(|hypothesis| {
+            let weight = hypothesis.log_weight();
+            Some(weight) == lead || weight > best - NEGLIGIBLE
+        });
+        let latest = self.checkpoints.back().map(|checkpoint| checkpoint.after);
+        self.checkpoints.retain(|checkpoint| {
+            checkpoint.before_gap
+                || checkpoint.after.is_multiple_of(KEPT_CHECKPOINT_ROWS)
+                || Some(checkpoint.after) == latest
+        });
         let checkpoints = self.checkpoints.iter_mut();
         let plausible = checkpoints.flat_map(|checkpoint| &mut checkpoint.plausible);
         for hypothesis in self.bank.iter_mut().chain(plausible) {
-            hypothesis.filter.make_symmetric();
+            hypothesis.filter.round();
         }
-        self.learning.make_symmetric();
+        self.learning.round();
     }
 
     /// Returns what is known of ships like her.

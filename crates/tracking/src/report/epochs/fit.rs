@@ -5,8 +5,8 @@ use super::spans::Span;
 use crate::report::by_course::CourseUse;
 use crate::report::diagnostics::{observation, record_outcome};
 use crate::report::faults::Faults;
-use crate::report::kept::TrackedRow;
-use crate::report::past::{Piece, Tally, is_offered, keep_some, stronger};
+use crate::report::kept::{TrackedRow, is_offered, keep_some};
+use crate::report::past::{Piece, Tally, stronger};
 use crate::report::predictions::{WatchPredictions, widened};
 use crate::report::references::References;
 use crate::state_space::ship_state::ShipState;
@@ -198,7 +198,7 @@ impl Fitting<'_> {
             record_outcome(&mut readings[row.place], row, &model, &self.noise);
         }
         // By the ship of each time: the latest would not explain a year of small changes.
-        let residuals = usable.iter().map(|row| row.innovation_deg);
+        let residuals = usable.iter().map(|row| f64::from(row.innovation_deg));
         let found = span.past.iter().map(|piece| piece.judged).sum::<u64>()
             + judged(self.rows, &span.own, readings);
         // A few rows after a change may all have been read before it was known.

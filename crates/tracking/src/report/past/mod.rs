@@ -5,15 +5,13 @@
 //! reported.
 
 mod piece;
-mod sampled;
 mod tally;
 
-pub(super) use piece::{Piece, is_offered, stronger};
-pub(super) use sampled::{SettledReading, keep_some, settled_readings};
+pub(super) use piece::{Piece, stronger};
 pub(super) use tally::Tally;
 
 use super::by_course::CourseUse;
-use super::kept::{json, micros};
+use super::kept::{SettledReading, json, micros};
 use super::row_times::RowTime;
 use crate::weighing::records::{Class, Detected};
 use binnacle_compass::coverage::Coverage;

@@ -3,6 +3,7 @@
 use super::tally::Tally;
 use crate::report::diagnostics::observation;
 use crate::report::faults::Faults;
+use crate::report::kept::is_offered;
 use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::result::SampleReason;
 use binnacle_compass::time::Timestamp;
@@ -99,14 +100,6 @@ impl Piece {
             self.strongest_weak_nt = stronger(self.strongest_weak_nt, here_nt);
         }
     }
-}
-
-/// Returns true if a reading with an outcome is offered to the model.
-pub(crate) fn is_offered(outcome: Option<SampleReason>) -> bool {
-    matches!(
-        outcome,
-        None | Some(SampleReason::Outlier | SampleReason::NoModel)
-    )
 }
 
 /// Returns the stronger of two fields, where there are any.

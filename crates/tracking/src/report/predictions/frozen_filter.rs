@@ -66,9 +66,10 @@ impl FrozenFilter {
         })
     }
 
-    /// Makes the covariance symmetric to the last bit.
-    pub(crate) fn make_symmetric(&mut self) {
-        self.filter.make_symmetric();
+    /// Rounds the filter to what is kept of it.
+    pub(crate) fn round(&mut self) {
+        self.filter.round();
+        self.with_sum = self.with_sum.map(|x| f64::from(x as f32));
     }
 
     /// Adds the next row, of a weight that is small where its reading is wild.

@@ -82,10 +82,10 @@ impl WatchPredictions {
         }
     }
 
-    /// Makes the covariance of the watch that goes on symmetric to the last bit.
-    pub(crate) fn make_symmetric(&mut self) {
+    /// Rounds the filter of the watch that goes on to what is kept of it.
+    pub(crate) fn round(&mut self) {
         if let Some(open) = &mut self.open {
-            open.filter.make_symmetric();
+            open.filter.round();
         }
     }
 
