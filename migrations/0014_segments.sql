@@ -3,12 +3,12 @@
 -- The table diagnostics is no longer used: an older server beside this one still writes it, and a
 -- later release removes it.
 
--- 30 days of a compass's samples, each with what the analysis of all until then has settled.
+-- 10 days of a compass's samples, each with what the analysis of all until then has settled.
 CREATE TABLE segments (
     vessel_id UUID NOT NULL,
     compass_id UUID NOT NULL,
-    segment BIGINT NOT NULL, -- number of the 30 days since 1970
-    batches_sha256 BYTEA NOT NULL, -- of the hashes of its batches
+    segment BIGINT NOT NULL, -- number of the 10 days since 1970
+    batches_sha256 BYTEA NOT NULL, -- of the numbers of its batches
     samples_sha256 BYTEA NOT NULL, -- of its distinct samples
     key BYTEA NOT NULL, -- SHA-256 of all that the row was derived from
     -- Diagnoses that were settled at its end; of the last segment, those that are not yet.

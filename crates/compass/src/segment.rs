@@ -2,14 +2,15 @@
 
 use crate::time::Timestamp;
 
-/// Length of a segment, microseconds: 30 days.
-const SEGMENT_MICROS: i64 = 30 * 86_400 * 1_000_000;
-
-/// Segment of a compass's samples: 30 days, counted from 1970.
+/// Segment of a compass's samples: 10 days, counted from 1970.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Segment(i64);
 
 impl Segment {
+    /// Length, microseconds: 10 days. A new batch is read with those of its segment, and a state
+    /// is kept at the end of each.
+    pub const MICROS: i64 = 10 * 86_400 * 1_000_000;
+
     /// Returns the segment of a number.
     pub fn new(number: i64) -> Segment {
         Segment(number)
@@ -17,7 +18,7 @@ impl Segment {
 
     /// Returns the segment in which a time lies.
     pub fn of(time: Timestamp) -> Segment {
-        Segment(time.micros().div_euclid(SEGMENT_MICROS))
+        Segment(time.micros().div_euclid(Segment::MICROS))
     }
 
     /// Returns its number.
@@ -27,7 +28,7 @@ impl Segment {
 
     /// Returns its beginning; none before the first year of a timestamp.
     pub fn begin(self) -> Option<Timestamp> {
-        Timestamp::from_micros(self.0.checked_mul(SEGMENT_MICROS)?).ok()
+        Timestamp::from_micros(self.0.checked_mul(Segment::MICROS)?).ok()
     }
 
     /// Returns the instant after its end; none after the last year of a timestamp.
@@ -46,7 +47,7 @@ mod tests {
         let segment = Segment::of(time);
         let (begin, end) = (segment.begin().unwrap(), segment.end().unwrap());
         assert!(begin <= time && time < end);
-        assert_eq!(end.micros() - begin.micros(), SEGMENT_MICROS);
+        assert_eq!(end.micros() - begin.micros(), Segment::MICROS);
         assert_eq!(Segment::of(begin), segment);
         assert_eq!(Segment::of(end), Segment::new(segment.number() + 1));
     }

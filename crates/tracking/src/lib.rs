@@ -28,7 +28,7 @@
 //! **Learning.** Sizes of habits have log-normal priors and follow the slope of the likelihood
 //! (recursive maximum likelihood: Ljung & Söderström 1983, chapter 3).
 //!
-//! **A fold.** [`analyse`] is a fold over segments of 30 days. A [`Voyage`] is the state between
+//! **A fold.** [`analyse`] is a fold over segments of 10 days. A [`Voyage`] is the state between
 //! two of them: a plain value that, kept and read again, goes on as if it had never been put away.
 //! Samples of more than a month ago are settled: no later one changes what is said of them.
 //!

@@ -17,7 +17,7 @@ use binnacle_tracking::{Part, Voyage};
 use std::sync::Arc;
 
 /// Settled segments whose samples an analysis has besides those that are not settled.
-const SHOWN_SEGMENTS: usize = 2;
+const SHOWN_SEGMENTS: usize = 6;
 
 /// Outcome of a fold.
 pub(super) enum Folded {

@@ -4631,7 +4631,7 @@ export interface components {
             data_until: components["schemas"]["Time"];
             /**
              * @description The estimator that made it.
-             * @example hypotheses-3
+             * @example hypotheses-4
              */
             estimator: string;
             /** @description Time at which it was fitted or predicted. */

@@ -332,7 +332,7 @@ pub struct CardModel {
     #[schema(required, example = 0.3)]
     pub rms_deg: Option<f64>,
     /// The estimator that made it.
-    #[schema(example = "hypotheses-3")]
+    #[schema(example = "hypotheses-4")]
     pub estimator: String,
     /// SHA-256 of everything that it was made from.
     pub input_hash: String,

@@ -16,11 +16,11 @@ use binnacle_compass::time::Timestamp;
 use binnacle_platform::db::{Db, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, VesselId};
-use binnacle_platform::time::Time;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 use std::fmt;
+use uuid::Uuid;
 
 /// SHA-256.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ impl fmt::Display for Hash {
 
 /// Stored input of a compass, without the batches themselves.
 pub struct StoredInput {
-    /// Hashes of the batches, by segment, the first first.
+    /// Segments of the log, the first first.
     pub segments: Vec<LoggedSegment>,
     /// Entries of the logbook.
     pub logbook: Vec<LogbookEntry>,
@@ -51,15 +51,18 @@ pub struct StoredInput {
 pub struct LoggedSegment {
     /// The segment. Samples of a batch in between belong to the next that is logged.
     pub segment: Segment,
-    /// Hash of the hashes of the batches with samples in it.
+    /// Hash of the numbers of the batches with samples in it.
     pub batches: Hash,
 }
 
-#[derive(sqlx::FromRow)]
-struct ListedBatch {
-    sha256: Vec<u8>,
-    first_sample_at: Time,
-    last_sample_at: Time,
+/// Batches of a stream that begin in one segment and end in one. A batch is never changed, so that
+/// their number says whether they are those of before.
+#[derive(Clone, sqlx::FromRow)]
+struct LoggedBatches {
+    stream: Uuid,
+    first_segment: i64,
+    last_segment: i64,
+    batches: i64,
 }
 
 /// Lists the stored input of a compass. Future-dated logbook entries are left out: the card
@@ -72,14 +75,19 @@ pub async fn load(
 ) -> Result<StoredInput> {
     let batches = rows!(
         db,
-        ListedBatch,
-        "SELECT b.sha256, b.first_sample_at, b.last_sample_at FROM batches b
-         JOIN streams s ON s.vessel_id = b.vessel_id AND s.id = b.stream
-         WHERE b.vessel_id = $1 AND s.compass_id = $2
-           AND b.first_sample_at IS NOT NULL AND b.last_sample_at IS NOT NULL
-         ORDER BY b.stream, b.seq",
+        LoggedBatches,
+        "SELECT stream, first_segment, last_segment, COUNT(*) AS batches
+         FROM (SELECT b.stream, b.first_sample_at / $3 AS first_segment,
+                      b.last_sample_at / $3 AS last_segment
+               FROM batches b
+               JOIN streams s ON s.vessel_id = b.vessel_id AND s.id = b.stream
+               WHERE b.vessel_id = $1 AND s.compass_id = $2
+                 AND b.first_sample_at IS NOT NULL AND b.last_sample_at IS NOT NULL) logged
+         GROUP BY stream, first_segment, last_segment
+         ORDER BY stream, first_segment, last_segment",
         vessel,
-        compass
+        compass,
+        Segment::MICROS
     )?;
     let (logbook, ahead): (Vec<_>, Vec<_>) = logbook::of_compass(db, vessel, compass)
         .await?
@@ -96,30 +104,29 @@ pub async fn load(
 }
 
 /// Returns the segments in which batches begin or end.
-fn segments(mut batches: Vec<ListedBatch>) -> Vec<LoggedSegment> {
-    let ends = |batch: &ListedBatch| [batch.first_sample_at, batch.last_sample_at];
-    let segments: BTreeSet<Segment> = batches
-        .iter()
-        .flat_map(ends)
-        .map(|time| Segment::of(time.0))
-        .collect();
-    // The order in which they arrived counts for nothing.
-    batches.sort_unstable_by(|a, b| {
-        (a.first_sample_at, &a.sha256).cmp(&(b.first_sample_at, &b.sha256))
+fn segments(mut batches: Vec<LoggedBatches>) -> Vec<LoggedSegment> {
+    let ends = |batches: &LoggedBatches| [batches.first_segment, batches.last_segment];
+    let segments: BTreeSet<i64> = batches.iter().flat_map(ends).collect();
+    batches.sort_unstable_by_key(|batches| {
+        (batches.first_segment, batches.last_segment, batches.stream)
     });
-    let mut before: Option<Segment> = None;
+    let mut before: Option<i64> = None;
     let mut logged = Vec::with_capacity(segments.len());
     for segment in segments {
         let mut hash = Sha256::new();
-        let later =
-            batches.partition_point(|batch| Segment::of(batch.first_sample_at.0) <= segment);
-        for batch in &batches[..later] {
-            if before.is_none_or(|before| Segment::of(batch.last_sample_at.0) > before) {
-                hash.update(&batch.sha256);
+        let later = batches.partition_point(|batches| batches.first_segment <= segment);
+        for batches in &batches[..later] {
+            if before.is_none_or(|before| batches.last_segment > before) {
+                hash.update(batches.stream.as_bytes());
+                for number in [batches.first_segment, batches.last_segment, batches.batches] {
+                    hash.update(number.to_le_bytes());
+                }
             }
         }
-        let batches = Hash(hash.finalize().into());
-        logged.push(LoggedSegment { segment, batches });
+        logged.push(LoggedSegment {
+            segment: Segment::new(segment),
+            batches: Hash(hash.finalize().into()),
+        });
         before = Some(segment);
     }
     logged
@@ -204,16 +211,22 @@ impl StoredInput {
         let mut hash = Sha256::new();
         hash.update(before.0);
         update(&mut hash, &end)?;
+        // What was known before is in the key before.
+        let begin = place.checked_sub(1).and_then(|before| self.end(before));
+        let is_new = |time: Timestamp| begin.is_none_or(|begin| time >= begin);
         for entry in &self.logbook {
             let known = match end {
                 Some(end) => entry.known_before(end),
                 None => Some(entry.clone()),
             };
-            if let Some(entry) = known {
+            if let Some(entry) = known.filter(|e| is_new(e.from) || e.to.is_some_and(is_new)) {
                 update(&mut hash, &entry)?;
             }
         }
-        let azimuths = self.azimuths.iter();
+        let azimuths = self
+            .azimuths
+            .iter()
+            .filter(|azimuth| is_new(azimuth.time()));
         for azimuth in azimuths.filter(|azimuth| end.is_none_or(|end| azimuth.time() < end)) {
             update(&mut hash, azimuth.form())?;
         }
@@ -310,26 +323,28 @@ mod tests {
         );
     }
 
-    /// Returns a batch with the first and last sample at some times.
-    fn batch(number: u8, from: &str, to: &str) -> ListedBatch {
-        ListedBatch {
-            sha256: vec![number; 32],
-            first_sample_at: Time(time(from)),
-            last_sample_at: Time(time(to)),
+    /// Returns so many batches with the first and last sample at some times.
+    fn logged(batches: i64, from: &str, to: &str) -> LoggedBatches {
+        let segment = |text: &str| Segment::of(time(text)).number();
+        LoggedBatches {
+            stream: Uuid::nil(),
+            first_segment: segment(from),
+            last_segment: segment(to),
+            batches,
         }
     }
 
-    /// Returns the batches of three segments; one lies across the end of the first.
-    fn batches() -> Vec<ListedBatch> {
+    /// Returns the batches of five segments; one lies across the end of the second.
+    fn batches() -> Vec<LoggedBatches> {
         vec![
-            batch(1, "2026-09-20T00:00:00Z", "2026-09-20T06:00:00Z"),
-            batch(2, "2026-10-03T20:00:00Z", "2026-10-04T06:00:00Z"),
-            batch(3, "2026-10-20T00:00:00Z", "2026-10-20T06:00:00Z"),
-            batch(4, "2026-11-20T00:00:00Z", "2026-11-20T06:00:00Z"),
+            logged(1, "2026-09-20T00:00:00Z", "2026-09-20T06:00:00Z"),
+            logged(1, "2026-10-03T20:00:00Z", "2026-10-04T06:00:00Z"),
+            logged(2, "2026-10-20T00:00:00Z", "2026-10-21T06:00:00Z"),
+            logged(1, "2026-11-20T00:00:00Z", "2026-11-20T06:00:00Z"),
         ]
     }
 
-    fn input(batches: Vec<ListedBatch>, logbook: Vec<LogbookEntry>) -> StoredInput {
+    fn input(batches: Vec<LoggedBatches>, logbook: Vec<LogbookEntry>) -> StoredInput {
         StoredInput {
             segments: segments(batches),
             logbook,
@@ -363,16 +378,18 @@ mod tests {
         assert_eq!(segments(reversed), logged);
         let without = |number: usize| {
             let mut batches = batches();
-            batches.remove(number);
+            batches[number].batches -= 1;
+            batches.retain(|batches| batches.batches > 0);
             let other = segments(batches);
             let place = |of: &LoggedSegment| other.iter().find(|o| o.segment == of.segment);
             let is_same = |of: &LoggedSegment| place(of).is_some_and(|o| o.batches == of.batches);
             logged.iter().map(is_same).collect::<Vec<bool>>()
         };
-        assert_eq!(logged.len(), 3, "{logged:?}");
-        assert_eq!(without(0), [false, true, true]);
-        assert_eq!(without(1), [false, false, true]);
-        assert_eq!(without(3), [true, true, false]);
+        assert_eq!(logged.len(), 5, "{logged:?}");
+        assert_eq!(without(0), [false, true, true, true, true]);
+        assert_eq!(without(1), [true, false, false, true, true]);
+        assert_eq!(without(2), [true, true, true, false, true]);
+        assert_eq!(without(3), [true, true, true, true, false]);
     }
 
     #[test]
@@ -386,12 +403,12 @@ mod tests {
         };
         let bare = keys(&input(batches(), Vec::new()), None);
         let of = |entry: LogbookEntry| keys(&input(batches(), vec![entry]), None);
-        assert_eq!(same(&bare, &of(entry("2026-10-20T03:00:00Z", None))), 1);
+        assert_eq!(same(&bare, &of(entry("2026-10-20T03:00:00Z", None))), 3);
         let open = of(entry("2026-09-20T03:00:00Z", None));
         assert_eq!(same(&bare, &open), 0);
         // An end is known from its own segment on.
         let ended = of(entry("2026-09-20T03:00:00Z", Some("2026-11-20T03:00:00Z")));
-        assert_eq!(same(&open, &ended), 2);
+        assert_eq!(same(&open, &ended), 4);
     }
 
     #[test]
@@ -423,10 +440,10 @@ mod tests {
             keys(&input, None)
         };
         let bare = of(&[]);
-        assert_eq!(same(&bare, &of(&[95.0])), 1);
-        assert_eq!(same(&of(&[95.0]), &of(&[96.0])), 1);
-        assert_eq!(same(&of(&[95.0]), &of(&[95.0, 95.0])), 1);
-        assert_eq!(same(&of(&[95.0]), &of(&[95.0])), 3);
+        assert_eq!(same(&bare, &of(&[95.0])), 3);
+        assert_eq!(same(&of(&[95.0]), &of(&[96.0])), 3);
+        assert_eq!(same(&of(&[95.0]), &of(&[95.0, 95.0])), 3);
+        assert_eq!(same(&of(&[95.0]), &of(&[95.0])), 5);
     }
 
     #[test]

@@ -27,7 +27,7 @@ pub const KEPT_STATES: usize = 2;
 pub struct KnownSegment {
     /// Its segment.
     pub segment: Segment,
-    /// Hash of the hashes of its batches.
+    /// Hash of the numbers of its batches.
     pub batches: Hash,
     /// Hash of its samples.
     pub samples: Hash,

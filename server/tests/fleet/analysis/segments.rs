@@ -139,7 +139,7 @@ async fn months_analysed_as_they_come_give_what_one_analysis_gives(server: TestS
     let weekly = server.ship(&ben, "Nao").await;
     send(&server, &weekly, &weeks, 1).await;
     assert_shown(&ben, &weekly, &expected).await;
-    assert_eq!(count(&server, &weekly).await, (4, 2));
+    assert_eq!(count(&server, &weekly).await, (11, 2));
 
     // The third week comes last, and others in pairs and reversed.
     let late = server.ship(&eva, "Nao").await;
@@ -156,7 +156,7 @@ async fn months_analysed_as_they_come_give_what_one_analysis_gives(server: TestS
     server.run_sql("DELETE FROM segments").await;
     analyse_again(&server, &late).await;
     assert_shown(&eva, &late, &expected).await;
-    assert_eq!(count(&server, &late).await, (4, 2));
+    assert_eq!(count(&server, &late).await, (11, 2));
 
     // So may be a part of it.
     server
