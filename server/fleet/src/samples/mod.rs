@@ -12,7 +12,7 @@ use axum::response::Response;
 use binnacle_compass::result::SampleDiagnostic;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
-use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::error::{Problem, Result};
 use binnacle_platform::http::{FileContent, Id, Json, Page, Params, time};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
