@@ -194,12 +194,11 @@ pub struct Mistake {
 impl Mistake {
     /// A mistake in a field, whose parts are named like `terms.fee_eur` or `kinds[0]`.
     fn in_field(field: &str, detail: &str) -> Mistake {
-        let parts = field
-            .split(['.', '['])
-            .map(|part| part.trim_end_matches(']'));
+        let parts = field.split(['.', '[']);
+        let parts = parts.flat_map(|part| ["/", part.trim_end_matches(']')]);
         let pointer = match field {
             "body" => String::new(),
-            _ => parts.map(|part| format!("/{part}")).collect(),
+            _ => parts.collect(),
         };
         Mistake {
             pointer,

@@ -40,8 +40,8 @@ impl Period {
         let from = time("from", self.from.as_deref())?;
         let to = time("to", self.to.as_deref())?;
         Ok((
-            from.map_or(i64::MIN, |from| from.micros()),
-            to.map_or(i64::MAX, |to| to.micros()),
+            from.map_or(i64::MIN, Timestamp::micros),
+            to.map_or(i64::MAX, Timestamp::micros),
         ))
     }
 }

@@ -146,15 +146,12 @@ impl Converter {
         if self.done {
             return Ok(None);
         }
-        let end = match self.source.next().await {
-            Some(bytes) => {
-                self.pending.extend_from_slice(&bytes?);
-                end_of_lines(&self.pending)
-            }
-            None => {
-                self.done = true;
-                self.pending.len()
-            }
+        let end = if let Some(bytes) = self.source.next().await {
+            self.pending.extend_from_slice(&bytes?);
+            end_of_lines(&self.pending)
+        } else {
+            self.done = true;
+            self.pending.len()
         };
         let rest = self.pending.split_off(end);
         let lines = std::mem::replace(&mut self.pending, rest);
