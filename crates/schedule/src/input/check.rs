@@ -39,8 +39,12 @@ fn max_candidates(input: &Input) -> u64 {
     for vessel in of_needs.chain(input.compasses.iter().map(|compass| &compass.vessel)) {
         *needs.entry(vessel.as_str()).or_insert(0_u64) += 1;
     }
-    for served in input.firms.iter().flat_map(|firm| &firm.ports) {
-        *firms.entry(served.port).or_insert(0_u64) += 1;
+    for firm in &input.firms {
+        // Teams with names are asked one by one.
+        let crews = firm.teams.named().len().max(1) as u64;
+        for served in &firm.ports {
+            *firms.entry(served.port).or_insert(0_u64) += crews;
+        }
     }
     input.port_calls.iter().fold(0, |sum: u64, call| {
         let days = (call.etd.utc_date() - call.eta.utc_date()).num_days() + 1;

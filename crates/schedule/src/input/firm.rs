@@ -1,8 +1,9 @@
 //! Adjuster firms.
 
+use super::{Teams, TravelTime};
 use crate::ports::PortCode;
 use crate::rules::Flag;
-use crate::time::Eur;
+use crate::time::{Eur, Instant};
 use chrono::{Datelike, NaiveDate, Weekday};
 use serde::{Deserialize, Serialize};
 
@@ -23,15 +24,18 @@ pub struct Firm {
     /// Flags that accept its adjusters; empty for all.
     #[serde(default)]
     pub flags: Vec<Flag>,
-    /// Teams on a working day.
+    /// Teams on a working day: their number, or each by name.
     #[serde(default = "default_teams")]
-    pub teams: u32,
-    /// Jobs per team and day in one port.
-    #[serde(default = "default_teams")]
+    pub teams: Teams,
+    /// The most jobs per team and day.
+    #[serde(default = "default_jobs")]
     pub jobs_a_team_day: u32,
     /// Teams that are booked elsewhere, and cannot be planned.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub taken: Vec<Taken>,
+    /// Hours between its ports where it knows better than the distance.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub travel_times: Vec<TravelTime>,
     /// Working days of the week.
     #[serde(default = "default_working_days")]
     pub working_days: Vec<Weekday>,
@@ -55,13 +59,45 @@ pub struct Firm {
 }
 
 /// Teams that are booked elsewhere on a day.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Taken {
     /// The day, in the port's time.
     pub day: NaiveDate,
     /// Number of teams.
+    #[serde(default = "default_jobs")]
     pub teams: u32,
+    /// Which team, where teams have names.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub team: Option<String>,
+    /// Hours of that day; the whole day, if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hours: Option<TakenHours>,
+}
+
+/// Hours that are booked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TakenHours {
+    /// Beginning.
+    pub from: Instant,
+    /// End.
+    pub to: Instant,
+    /// The port; where the team happens to be, if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub port: Option<PortCode>,
+}
+
+impl Taken {
+    /// Returns so many teams, whichever, for a whole day.
+    pub fn whole_day(day: NaiveDate, teams: u32) -> Taken {
+        Taken {
+            day,
+            teams,
+            team: None,
+            hours: None,
+        }
+    }
 }
 
 /// A port that a firm serves.
@@ -84,10 +120,16 @@ impl Firm {
         self.working_days.contains(&day.weekday()) && !self.closed.contains(&day)
     }
 
-    /// Returns the number of teams available on a day.
+    /// Returns the number of teams that are available on a day, for the whole of it or for
+    /// some hours.
     pub fn teams_on(&self, day: NaiveDate) -> u32 {
-        let taken = self.taken.iter().filter(|taken| taken.day == day);
-        taken.fold(self.teams, |left, taken| left.saturating_sub(taken.teams))
+        let whole = self
+            .taken
+            .iter()
+            .filter(|taken| taken.day == day && taken.hours.is_none());
+        whole.fold(self.teams.count(), |left, taken| {
+            left.saturating_sub(taken.teams)
+        })
     }
 
     /// Returns true if a flag accepts its adjusters; an unknown flag may not.
@@ -107,7 +149,11 @@ impl Firm {
     }
 }
 
-fn default_teams() -> u32 {
+fn default_teams() -> Teams {
+    Teams::Alike(1)
+}
+
+fn default_jobs() -> u32 {
     1
 }
 

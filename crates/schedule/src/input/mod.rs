@@ -10,13 +10,18 @@ mod error;
 mod firm;
 mod firm_check;
 mod read;
+mod team;
+mod travel;
 mod weights;
 
 pub use check::check_size;
 pub use error::InputError;
-pub use firm::{Firm, ServedPort, Taken};
+pub use firm::{Firm, ServedPort, Taken, TakenHours};
 pub use firm_check::{FirmError, check_firm};
 pub use read::read;
+pub use team::{Team, Teams};
+pub(crate) use travel::travel_s;
+pub use travel::{TravelTime, usual_hours};
 pub use weights::{JOB_H, Weights};
 
 use crate::calls::PortCall;
@@ -162,6 +167,12 @@ pub struct FormerJob {
     pub firm: String,
     /// The day.
     pub day: NaiveDate,
+    /// The hour at which it was to begin; any hour of the day, if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<Instant>,
+    /// The team, where the firm's teams have names; any, if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub team: Option<String>,
     /// Progress of the job.
     pub state: JobState,
 }

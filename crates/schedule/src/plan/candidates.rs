@@ -1,12 +1,13 @@
 //! The candidates of each job, as an assignment problem.
 
-use super::confirmed::Confirmation;
+use super::confirmed::{Confirmation, Held};
+use super::crews::{self, Crew};
 use super::jobs::Job;
 use super::quote::{self, Quote};
 use crate::calls::PortCall;
 use crate::input::{Firm, Input};
 use crate::ports::PortCode;
-use crate::solve::{Choice, Problem, Visit};
+use crate::solve::{Choice, CrewDay, Problem, Visit};
 use crate::time::Eur;
 use chrono::NaiveDate;
 use std::collections::BTreeMap;
@@ -20,6 +21,7 @@ pub(super) struct Candidate<'a> {
     pub(super) job: usize,
     pub(super) call: &'a PortCall,
     pub(super) firm: usize,
+    pub(super) crew: usize,
     pub(super) day: NaiveDate,
     pub(super) quote: Quote,
     pub(super) visit: usize,
@@ -29,60 +31,65 @@ pub(super) struct Candidate<'a> {
 pub(super) struct Candidates<'a> {
     pub(super) all: Vec<Candidate<'a>>,
     pub(super) problem: Problem,
+    pub(super) crews: &'a [Crew<'a>],
     visits: BTreeMap<(usize, PortCode, NaiveDate), usize>,
-    firm_days: BTreeMap<(usize, NaiveDate), usize>,
+    days: BTreeMap<(usize, NaiveDate), usize>,
 }
 
 impl<'a> Candidates<'a> {
+    /// The crews, and no candidates yet.
+    pub(super) fn new(input: &Input, crews: &'a [Crew<'a>]) -> Candidates<'a> {
+        Candidates {
+            all: Vec::new(),
+            problem: Problem {
+                job_s: quote::job_s(input),
+                crews: crews.iter().map(Crew::numbers).collect(),
+                ..Problem::default()
+            },
+            crews,
+            visits: BTreeMap::new(),
+            days: BTreeMap::new(),
+        }
+    }
+
     pub(super) fn from_jobs(
         input: &'a Input,
+        crews: &'a [Crew<'a>],
         jobs: &[Job<'a>],
         confirmations: &[Confirmation<'a>],
     ) -> Candidates<'a> {
-        let mut candidates = Candidates {
-            all: Vec::new(),
-            problem: Problem::default(),
-            visits: BTreeMap::new(),
-            firm_days: BTreeMap::new(),
-        };
+        let mut candidates = Candidates::new(input, crews);
         let mut serving: BTreeMap<PortCode, Vec<usize>> = BTreeMap::new();
-        for (at, firm) in input.firms.iter().enumerate() {
-            for served in &firm.ports {
+        for (at, crew) in crews.iter().enumerate() {
+            for served in crew
+                .firm
+                .ports
+                .iter()
+                .filter(|served| crew.serves(served.port))
+            {
                 serving.entry(served.port).or_default().push(at);
             }
         }
         for (at, (job, confirmation)) in jobs.iter().zip(confirmations).enumerate() {
-            if let Confirmation::Holds {
-                call,
-                firm,
-                day,
-                quote,
-            } = confirmation
-            {
-                let travel = travel(&input.firms[*firm], call.port);
+            let first = candidates.all.len();
+            if let Confirmation::Holds(held) = confirmation {
+                candidates.add_held(at, held);
+                let own = candidates.all[first..].iter();
+                let dearest = own
+                    .map(|own| own.quote.cost() + candidates.travel(own))
+                    .max();
                 candidates
                     .problem
                     .unmet
-                    .push(quote.cost() + travel + CONFIRMED_VALUE);
-                candidates.add(input, at, call, *firm, *day, *quote);
+                    .push(dearest.unwrap_or(0) + CONFIRMED_VALUE);
                 continue;
             }
-            let first = candidates.all.len();
             let only_late =
                 matches!(confirmation, Confirmation::Released { only_late, .. } if *only_late);
             for &call in &job.calls {
-                for &firm in serving.get(&call.port).into_iter().flatten() {
+                for &crew in serving.get(&call.port).into_iter().flatten() {
                     for day in quote::days(call, input.now) {
-                        let of = &input.firms[firm];
-                        let Ok(quote) = quote::quote(input, job, call, of, day) else {
-                            continue;
-                        };
-                        // A confirmed but late job may stay, or move to a day
-                        // in time.
-                        let as_late = only_late && quote.late_days > 0;
-                        if !as_late || job.was_planned(&call.id, &of.id, day) {
-                            candidates.add(input, at, call, firm, day, quote);
-                        }
+                        candidates.add_day(input, (at, job), call, crew, day, only_late);
                     }
                 }
             }
@@ -97,29 +104,57 @@ impl<'a> Candidates<'a> {
         candidates
     }
 
-    fn add(
+    /// Adds the ways in which a confirmation can be kept.
+    pub(super) fn add_held(&mut self, job: usize, held: &Held<'a>) {
+        for (crew, quote) in &held.ways {
+            self.add(job, held.call, *crew, held.day, *quote);
+        }
+    }
+
+    /// Adds a job on a crew's day: at any hour, and at that which the firm was asked for.
+    fn add_day(
         &mut self,
         input: &Input,
-        job: usize,
+        (at, job): (usize, &Job<'a>),
         call: &'a PortCall,
-        firm: usize,
+        crew: usize,
         day: NaiveDate,
-        quote: Quote,
+        only_late: bool,
     ) {
-        let of = &input.firms[firm];
+        let of = &self.crews[crew];
+        let was_planned = job.was_planned(&call.id, &of.firm.id, day);
+        let agreed = job.agreed_hour().filter(|_| was_planned).map(Some);
+        for hour in [None].into_iter().chain(agreed) {
+            let Ok(quote) = quote::quote(input, job, call, of, day, hour) else {
+                continue;
+            };
+            // A confirmed but late job may stay, or move to a day in time.
+            let as_late = only_late && quote.late_days > 0;
+            if !as_late || was_planned && hour == job.agreed_hour() {
+                self.add(at, call, crew, day, quote);
+            }
+        }
+    }
+
+    fn add(&mut self, job: usize, call: &'a PortCall, crew: usize, day: NaiveDate, quote: Quote) {
+        let of = &self.crews[crew];
         let problem = &mut self.problem;
-        let firm_day = *self.firm_days.entry((firm, day)).or_insert_with(|| {
-            problem.teams.push(of.teams_on(day));
-            problem.teams.len() - 1
+        let crew_day = *self.days.entry((crew, day)).or_insert_with(|| {
+            problem.days.push(CrewDay {
+                crew,
+                date: crews::date(day),
+                teams: of.teams().saturating_sub(of.booked(day)),
+            });
+            problem.days.len() - 1
         });
         let visit = *self
             .visits
-            .entry((firm, call.port, day))
+            .entry((crew, call.port, day))
             .or_insert_with(|| {
                 problem.visits.push(Visit {
-                    firm_day,
-                    travel: travel(of, call.port),
-                    jobs_a_team: of.jobs_a_team_day,
+                    day: crew_day,
+                    place: of.place(call.port),
+                    travel: travel(of.firm, call.port),
                 });
                 problem.visits.len() - 1
             });
@@ -127,15 +162,22 @@ impl<'a> Candidates<'a> {
             need: job,
             visit,
             cost: quote.cost(),
+            window: quote.window,
         });
         self.all.push(Candidate {
             job,
             call,
-            firm,
+            firm: of.at,
+            crew,
             day,
             quote,
             visit,
         });
+    }
+
+    /// Returns the travel of a team for a candidate alone, in cents.
+    pub(super) fn travel(&self, candidate: &Candidate<'_>) -> i64 {
+        self.problem.visits[candidate.visit].travel
     }
 }
 

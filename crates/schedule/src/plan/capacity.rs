@@ -1,64 +1,113 @@
 //! Capacity that a plan leaves with the firms.
 
-use super::candidates::Candidate;
+use super::candidates::Candidates;
+use super::crews::{self, Crew};
 use super::jobs::Job;
-use crate::input::{Firm, Input};
+use super::quote;
+use crate::input::Firm;
 use crate::ports::PortCode;
+use crate::solve::{Appointment, Room, Wanted, Window, timetable};
+use crate::time::Instant;
 use chrono::NaiveDate;
-use std::collections::BTreeMap;
 
-/// The ships that each firm's teams serve in a plan, by day and port.
+/// A plan, and the room that it leaves.
 pub(super) struct Capacity<'a> {
-    days: BTreeMap<(&'a str, NaiveDate), BTreeMap<PortCode, Vec<&'a str>>>,
+    pub(super) candidates: &'a Candidates<'a>,
+    pub(super) jobs: &'a [Job<'a>],
+    assignment: &'a [Option<usize>],
+    appointments: Vec<Option<Appointment>>,
+    room: Room,
+}
+
+/// A ship that a team serves.
+pub(super) struct Served<'a> {
+    pub(super) ship: &'a str,
+    pub(super) port: PortCode,
+    pub(super) day: NaiveDate,
+    pub(super) from: Instant,
+    pub(super) to: Instant,
 }
 
 impl<'a> Capacity<'a> {
     pub(super) fn from_plan(
-        input: &'a Input,
-        jobs: &[Job<'a>],
-        made: &[Option<&Candidate<'a>>],
+        candidates: &'a Candidates<'a>,
+        jobs: &'a [Job<'a>],
+        assignment: &'a [Option<usize>],
     ) -> Capacity<'a> {
-        let mut capacity = Capacity {
-            days: BTreeMap::new(),
-        };
-        for candidate in made.iter().flatten() {
-            let firm = input.firms[candidate.firm].id.as_str();
-            let day = capacity.days.entry((firm, candidate.day)).or_default();
-            let called = jobs[candidate.job].vessel.display_name();
-            day.entry(candidate.call.port).or_default().push(called);
+        Capacity {
+            candidates,
+            jobs,
+            assignment,
+            appointments: timetable(&candidates.problem, assignment),
+            room: Room::new(&candidates.problem, assignment),
         }
-        capacity
     }
 
-    /// Returns the number of further teams that a firm would need for one more job in a
-    /// port.
-    pub(super) fn missing_teams(&self, firm: &Firm, port: PortCode, day: NaiveDate) -> u32 {
-        let none = BTreeMap::new();
-        let ports = self.days.get(&(firm.id.as_str(), day)).unwrap_or(&none);
-        let jobs = |port: &PortCode| ports.get(port).map_or(0, Vec::len);
-        let others = ports.keys().filter(|other| **other != port);
-        let teams = |jobs: usize| {
-            u32::try_from(jobs)
-                .unwrap_or(u32::MAX)
-                .div_ceil(firm.jobs_a_team_day)
-        };
-        let used: u32 = others.map(|port| teams(jobs(port))).sum();
-        let booked = firm.taken.iter().filter(|taken| taken.day == day);
-        let booked = booked.fold(0_u32, |sum, taken| sum.saturating_add(taken.teams));
-        let needed = used
-            .saturating_add(teams(jobs(&port) + 1))
-            .saturating_add(booked);
-        needed.saturating_sub(firm.teams)
+    /// Returns the crews of a firm, with their indices.
+    pub(super) fn crews_of(&self, firm: &Firm) -> impl Iterator<Item = (usize, &'a Crew<'a>)> {
+        let crews = self.candidates.crews.iter().enumerate();
+        let id = firm.id.clone();
+        crews.filter(move |(_, crew)| crew.firm.id == id)
     }
 
-    /// Returns the names of the ships that a firm serves on a day.
-    pub(super) fn ships_served(&self, firm: &Firm, day: NaiveDate) -> Vec<&'a str> {
-        let ports = self.days.get(&(firm.id.as_str(), day));
-        ports
-            .into_iter()
-            .flat_map(BTreeMap::values)
-            .flatten()
-            .copied()
-            .collect()
+    fn wanted(&self, at: usize, port: PortCode, day: NaiveDate, window: Window) -> Wanted {
+        let crew = &self.candidates.crews[at];
+        Wanted {
+            crew: at,
+            date: crews::date(day),
+            teams: crew.teams().saturating_sub(crew.booked(day)),
+            place: crew.place(port),
+            window,
+        }
+    }
+
+    /// Returns the number of further teams that a crew would need for one more job in a
+    /// port, within some hours.
+    pub(super) fn missing_teams(
+        &self,
+        crew: usize,
+        port: PortCode,
+        day: NaiveDate,
+        window: Window,
+    ) -> u32 {
+        let wanted = self.wanted(crew, port, day, window);
+        if self.room.earliest_end(&wanted, 0).is_some() {
+            return 0;
+        }
+        let of = &self.candidates.crews[crew];
+        1 + of.booked(day).saturating_sub(of.teams())
+    }
+
+    /// Returns the earliest end of one more job by a crew.
+    pub(super) fn earliest_end(
+        &self,
+        crew: usize,
+        port: PortCode,
+        day: NaiveDate,
+        window: Window,
+    ) -> Option<i64> {
+        self.room
+            .earliest_end(&self.wanted(crew, port, day, window), 0)
+    }
+
+    /// Returns the ships that a crew serves on a day and on those from which it could not come
+    /// in time, in order of time.
+    pub(super) fn ships_near(&self, crew: usize, day: NaiveDate) -> Vec<Served<'a>> {
+        let problem = &self.candidates.problem;
+        let near = Room::near(problem, self.assignment, crew, crews::date(day));
+        let served = near.into_iter().filter_map(|choice| {
+            let candidate = &self.candidates.all[choice];
+            let from = self.appointments[candidate.job]?.from;
+            Some(Served {
+                ship: self.jobs[candidate.job].vessel.display_name(),
+                port: candidate.call.port,
+                day: candidate.day,
+                from: quote::instant(from),
+                to: quote::instant(from + problem.job_s),
+            })
+        });
+        let mut served: Vec<Served<'a>> = served.collect();
+        served.sort_by_key(|served| (served.from, served.ship));
+        served
     }
 }

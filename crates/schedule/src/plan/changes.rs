@@ -6,6 +6,7 @@ use super::jobs::Job;
 use super::quote;
 use super::schedule::{Change, ChangeKind, Place};
 use crate::input::{FormerJob, Input};
+use crate::solve::Appointment;
 use crate::time::euros;
 
 /// Returns a change for each job of this plan or of the previous one.
@@ -15,6 +16,7 @@ pub(super) fn changes(
     confirmations: &[Confirmation<'_>],
     candidates: &Candidates<'_>,
     made: &[Option<&Candidate<'_>>],
+    hours: &[Option<Appointment>],
 ) -> Vec<Change> {
     let mut changes = Vec::new();
     for (at, job) in jobs.iter().enumerate() {
@@ -22,18 +24,24 @@ pub(super) fn changes(
             call: candidate.call.id.clone(),
             firm: input.firms[candidate.firm].id.clone(),
             day: candidate.day,
+            hour: hours[at].map(|hour| quote::instant(hour.from)),
         });
         let from = job.former.map(|former| Place {
             call: former.call.clone(),
             firm: former.firm.clone(),
             day: former.day,
+            hour: former.from,
+        });
+        let stays = from.as_ref().zip(to.as_ref()).is_some_and(|(from, to)| {
+            let same = (&from.call, &from.firm, from.day) == (&to.call, &to.firm, to.day);
+            same && job
+                .agreed_hour()
+                .is_none_or(|agreed| to.hour == Some(agreed))
         });
         let (what, why) = match (job.former, made[at]) {
             (None, None) => continue,
             (None, Some(_)) => (ChangeKind::New, job.needs[0].reason.clone()),
-            (Some(_), Some(_)) if from == to => {
-                (ChangeKind::Kept, reason_to_keep(&confirmations[at]))
-            }
+            (Some(_), Some(_)) if stays => (ChangeKind::Kept, reason_to_keep(&confirmations[at])),
             (Some(former), candidate) => {
                 let what = if candidate.is_some() {
                     ChangeKind::Moved
@@ -79,6 +87,7 @@ pub(super) fn changes(
                 call: former.call.clone(),
                 firm: former.firm.clone(),
                 day: former.day,
+                hour: former.from,
             }),
             to: None,
             why: "no longer due within the horizon".to_owned(),
@@ -155,9 +164,8 @@ fn reason_to_move(
     }
     match candidate {
         Some(candidate) => {
-            let travel =
-                |candidate: &Candidate<'_>| candidates.problem.visits[candidate.visit].travel;
-            let saved = old.quote.cost() + travel(old) - candidate.quote.cost() - travel(candidate);
+            let cost = |of: &Candidate<'_>| of.quote.cost() + candidates.travel(of);
+            let saved = cost(old) - cost(candidate);
             if saved > 0 {
                 format!(
                     "better by {:.2} euros, the cost of moving it included",

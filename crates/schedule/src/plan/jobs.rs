@@ -5,6 +5,7 @@ use crate::calls::PortCall;
 use crate::input::{Checked, FormerJob, Input, JobState, Vessel};
 use crate::needs::{Urgency, due};
 use crate::rules::built_in_rules;
+use crate::time::Instant;
 use chrono::{Days, NaiveDate};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -47,6 +48,13 @@ impl Job<'_> {
 
     pub(super) fn ids(&self) -> Vec<String> {
         self.needs.iter().map(|need| need.id.clone()).collect()
+    }
+
+    /// Returns the hour that a firm was asked for, or agreed to.
+    pub(super) fn agreed_hour(&self) -> Option<Instant> {
+        let former = self.former?;
+        let is_asked = former.state != JobState::Proposed;
+        former.from.filter(|_| is_asked)
     }
 
     /// Returns true if the previous plan has the job at this call, by this firm, on

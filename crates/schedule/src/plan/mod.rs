@@ -2,8 +2,10 @@
 //!
 //! Invariants:
 //! - A need is met at most once, by a firm that serves the port and is
-//!   accepted, within its teams, on a working day on which the ship is expected
-//!   alongside long enough.
+//!   accepted, on a working day and in hours in which the ship is expected
+//!   alongside.
+//! - A team does one job after the other, and has the time to travel between
+//!   them, also over nights.
 //! - A job is planned after its due date only if that has passed already,
 //!   nothing in time is available, or the weights allow it.
 //! - A confirmed job stays unchanged while it remains possible.
@@ -13,6 +15,7 @@ mod candidates;
 mod capacity;
 mod changes;
 mod confirmed;
+mod crews;
 mod jobs;
 mod quote;
 mod remedies;
@@ -25,9 +28,10 @@ pub use schedule::{
 
 use crate::calls::{BerthHeading, HeadingSource};
 use crate::input::{Checked, Input, JobState};
-use crate::solve;
+use crate::solve::{self, Appointment};
 use crate::time::euros;
 use candidates::{Candidate, Candidates, travel};
+use crews::Crew;
 use jobs::Job;
 use std::collections::BTreeMap;
 
@@ -35,15 +39,17 @@ use std::collections::BTreeMap;
 pub fn plan(checked: &Checked) -> Schedule {
     let input = checked.get();
     let (jobs, later) = jobs::jobs(checked);
-    let confirmations = confirmed::check_all(input, &jobs);
-    let candidates = Candidates::from_jobs(input, &jobs, &confirmations);
+    let crews = crews::crews(input);
+    let confirmations = confirmed::check_all(input, &crews, &jobs);
+    let candidates = Candidates::from_jobs(input, &crews, &jobs, &confirmations);
     let solved = solve::solve(&candidates.problem);
     let made: Vec<Option<&Candidate<'_>>> = solved
         .assignment
         .iter()
         .map(|choice| choice.map(|choice| &candidates.all[choice]))
         .collect();
-    let planned = planned(input, &jobs, &made);
+    let hours = solve::timetable(&candidates.problem, &solved.assignment);
+    let planned = planned(input, &jobs, &candidates, &made, &hours);
     // A floating-point sum of nothing is −0.
     let paid = planned
         .iter()
@@ -56,8 +62,8 @@ pub fn plan(checked: &Checked) -> Schedule {
         proven_optimal: gap == 0,
         paid_eur: (paid * 100.0).round() / 100.0,
         jobs: planned,
-        unscheduled: unscheduled::unscheduled(input, &jobs, &made, &candidates.problem.unmet),
-        changes: changes::changes(input, &jobs, &confirmations, &candidates, &made),
+        unscheduled: unscheduled::unscheduled(input, &jobs, &candidates, &solved.assignment),
+        changes: changes::changes(input, &jobs, &confirmations, &candidates, &made, &hours),
         later: later
             .into_iter()
             .map(|need| Later {
@@ -69,23 +75,36 @@ pub fn plan(checked: &Checked) -> Schedule {
     }
 }
 
-fn planned(input: &Input, jobs: &[Job<'_>], made: &[Option<&Candidate<'_>>]) -> Vec<PlannedJob> {
-    let mut at_visit: BTreeMap<usize, u32> = BTreeMap::new();
-    for candidate in made.iter().flatten() {
-        *at_visit.entry(candidate.visit).or_default() += 1;
+fn planned(
+    input: &Input,
+    jobs: &[Job<'_>],
+    candidates: &Candidates<'_>,
+    made: &[Option<&Candidate<'_>>],
+    hours: &[Option<Appointment>],
+) -> Vec<PlannedJob> {
+    let made = made.iter().zip(hours);
+    let made = made.filter_map(|(made, hour)| Some(((*made)?, (*hour)?)));
+    let made: Vec<(&Candidate<'_>, Appointment)> = made.collect();
+    // Jobs of each team at each visit, which share its travel.
+    let mut shares: BTreeMap<(usize, usize), u32> = BTreeMap::new();
+    for (candidate, appointment) in &made {
+        *shares
+            .entry((candidate.visit, appointment.team))
+            .or_default() += 1;
     }
-    let mut planned: Vec<PlannedJob> = made
-        .iter()
-        .flatten()
-        .map(|candidate| {
-            planned_job(
-                input,
-                &jobs[candidate.job],
-                candidate,
-                at_visit[&candidate.visit],
-            )
-        })
-        .collect();
+    let each = made.iter().map(|(candidate, appointment)| {
+        let jobs_there = shares[&(candidate.visit, appointment.team)];
+        let crew = &candidates.crews[candidate.crew];
+        planned_job(
+            input,
+            &jobs[candidate.job],
+            candidate,
+            crew,
+            *appointment,
+            jobs_there,
+        )
+    });
+    let mut planned: Vec<PlannedJob> = each.collect();
     planned.sort_by(|one, other| {
         (one.day, one.from, &one.needs).cmp(&(other.day, other.from, &other.needs))
     });
@@ -96,16 +115,15 @@ fn planned_job(
     input: &Input,
     job: &Job<'_>,
     candidate: &Candidate<'_>,
+    crew: &Crew<'_>,
+    appointment: Appointment,
     jobs_there: u32,
 ) -> PlannedJob {
-    let (firm, call, quote) = (
-        &input.firms[candidate.firm],
-        candidate.call,
-        candidate.quote,
-    );
+    let (firm, call, quote) = (crew.firm, candidate.call, candidate.quote);
     let port = quote::port_of(call);
-    let teams = jobs_there.div_ceil(firm.jobs_a_team_day);
-    let kept = job.was_planned(&call.id, &firm.id, candidate.day);
+    let from = quote::instant(appointment.from);
+    let is_agreed = job.agreed_hour().is_none_or(|agreed| agreed == from);
+    let kept = job.was_planned(&call.id, &firm.id, candidate.day) && is_agreed;
     PlannedJob {
         needs: job.ids(),
         vessel: job.vessel.id.clone(),
@@ -114,8 +132,9 @@ fn planned_job(
         port_name: port.name,
         firm: firm.id.clone(),
         day: candidate.day,
-        from: quote.from,
-        to: quote.to,
+        from,
+        to: quote::instant(appointment.from + quote::job_s(input)),
+        team: crew.team_name(appointment.team),
         berth_heading: call.berth_heading_deg.map(|heading_deg| BerthHeading {
             heading_deg,
             source: HeadingSource::Given,
@@ -130,7 +149,7 @@ fn planned_job(
         late_days: quote.late_days,
         chance_of_missing: (quote.chance_of_missing * 1e4).round() / 1e4,
         fee_eur: euros(quote.fee),
-        travel_eur: euros(travel(firm, call.port)) * f64::from(teams) / f64::from(jobs_there),
+        travel_eur: euros(travel(firm, call.port)) / f64::from(jobs_there),
         weighed: CostedOption {
             risk_eur: euros(quote.risk),
             waiting_eur: euros(quote.waiting),

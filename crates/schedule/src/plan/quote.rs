@@ -1,12 +1,16 @@
-//! The cost of a job by one firm on one day of one call, or the obstacles to
+//! The cost of a job by one crew on one day of one call, or the obstacles to
 //! it.
 
+use super::crews::{Crew, seconds_down, seconds_up};
 use super::jobs::Job;
 use crate::calls::PortCall;
 use crate::input::{Firm, Input, JobState};
 use crate::needs::Urgency;
 use crate::ports::{self, Port};
+use crate::solve::Window;
 use crate::time::Instant;
+use crate::zone::Zone;
+use binnacle_compass::time::Timestamp;
 use chrono::{Days, NaiveDate};
 
 /// The most days counted, so that sums of money cannot overflow.
@@ -31,11 +35,10 @@ pub(super) enum Obstacle {
     Declined,
 }
 
-/// The costs in cents, and the time.
+/// The costs in cents, and the hours within which the job is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Quote {
-    pub(super) from: Instant,
-    pub(super) to: Instant,
+    pub(super) window: Window,
     pub(super) chance_of_missing: f64,
     pub(super) late_days: i64,
     pub(super) fee: i64,
@@ -53,6 +56,12 @@ impl Quote {
     }
 }
 
+/// Returns the instant of a second since 1970.
+pub(super) fn instant(second: i64) -> Instant {
+    let at = Timestamp::from_micros(second.saturating_mul(1_000_000));
+    Instant(at.expect("hours of a call are years of this calendar"))
+}
+
 /// Returns the port of a call of a checked input.
 pub(super) fn port_of(call: &PortCall) -> &'static Port {
     ports::find(call.port).expect("the ports of a checked input are in the table")
@@ -67,14 +76,38 @@ pub(super) fn days(call: &PortCall, now: Instant) -> impl Iterator<Item = NaiveD
         .take_while(move |day| *day <= last)
 }
 
-/// Returns a quote, or all obstacles.
+/// Returns the seconds of a job.
+pub(super) fn job_s(input: &Input) -> i64 {
+    (input.weights.job_h * 3600.0).ceil() as i64
+}
+
+/// Returns the hours of a crew's day in a port.
+pub(super) fn work_hours(crew: &Crew<'_>, day: NaiveDate, zone: Zone) -> Window {
+    Window {
+        from: seconds_up(Instant::at(day, crew.first_hour(), zone)),
+        to: seconds_down(Instant::at(day, crew.last_hour(), zone)),
+    }
+}
+
+/// Returns the part of some hours in which the ship is alongside.
+pub(super) fn alongside(call: &PortCall, hours: Window) -> Window {
+    Window {
+        from: hours.from.max(seconds_up(call.eta)),
+        to: hours.to.min(seconds_down(call.etd)),
+    }
+}
+
+/// Returns a quote, or all obstacles; with an agreed beginning, that of the job at that
+/// hour.
 pub(super) fn quote(
     input: &Input,
     job: &Job<'_>,
     call: &PortCall,
-    firm: &Firm,
+    crew: &Crew<'_>,
     day: NaiveDate,
+    agreed: Option<Instant>,
 ) -> Result<Quote, Vec<Obstacle>> {
+    let (firm, job_s) = (crew.firm, job_s(input));
     let zone = port_of(call).zone;
     let weights = &input.weights;
     let today = input.now.date(zone);
@@ -83,15 +116,24 @@ pub(super) fn quote(
         .filter(|_| job.was_planned(&call.id, &firm.id, day))
         .map(|former| former.state);
     let confirmed = former == Some(JobState::Confirmed);
-    let opens = Instant::at(day, firm.first_hour, zone);
-    let closes = Instant::at(day, firm.last_hour, zone);
+    // An agreed beginning holds whatever the crew's hours are.
+    let work = match agreed.map(seconds_up) {
+        Some(from) => Window {
+            from,
+            to: from + job_s,
+        },
+        None => work_hours(crew, day, zone),
+    };
     // Notice counts only before a firm is asked.
     let ready = match former {
         Some(JobState::Offered | JobState::Confirmed) => input.now,
         Some(JobState::Proposed) | None => input.now.plus_hours(firm.lead_time_h),
     };
-    let begins = opens.max(ready);
-    let (from, to) = (begins.max(call.eta), closes.min(call.etd));
+    let alongside = alongside(call, work);
+    let window = Window {
+        from: alongside.from.max(seconds_up(ready)),
+        to: alongside.to,
+    };
     let late_days = (day - job.due()).num_days().max(0);
 
     let mut obstacles = Vec::new();
@@ -103,14 +145,14 @@ pub(super) fn quote(
     unless(firm.is_accepted_by(job.vessel.flag), Obstacle::Flag);
     let licence = job.vessel.licence.as_ref();
     unless(
-        licence.is_none_or(|asked| firm.licences.contains(asked)),
+        licence.is_none_or(|asked| crew.holds(asked)),
         Obstacle::Licence,
     );
     unless(firm.works(day), Obstacle::NotWorking);
-    let in_hours = closes.min(call.etd).hours_since(opens.max(call.eta)) >= weights.job_h;
+    let in_hours = alongside.to - alongside.from >= job_s;
     unless(in_hours, Obstacle::Stay);
     unless(
-        !in_hours || to.hours_since(from) >= weights.job_h,
+        !in_hours || window.to - window.from >= job_s,
         Obstacle::LeadTime,
     );
     let overdue = job.is_overdue(today);
@@ -126,7 +168,8 @@ pub(super) fn quote(
     }
 
     let urgency = job.urgency();
-    let chance_of_missing = call.chance_of_missing(begins, closes, weights.job_h);
+    let begins = instant(work.from.max(seconds_up(ready)));
+    let chance_of_missing = call.chance_of_missing(begins, instant(work.to), weights.job_h);
     let waits = (day - today).num_days().clamp(0, MAX_DAYS);
     let early_days = match urgency {
         Urgency::Routine | Urgency::Soon => (job.due() - day).num_days().clamp(0, MAX_DAYS),
@@ -141,8 +184,7 @@ pub(super) fn quote(
     let more = job.needs.iter().skip(1);
     let extra: i64 = more.map(|_| firm.extra_compass_eur.cents()).sum();
     Ok(Quote {
-        from,
-        to,
+        window,
         chance_of_missing,
         late_days,
         fee: firm.fee_eur.cents() + extra,
@@ -151,7 +193,7 @@ pub(super) fn quote(
         waiting: waits * weights.waiting_eur_day.weight(urgency).cents(),
         late: late_to_come * weights.late_eur_day.cents() + late_at_all,
         early: early_days * weights.early_eur_day.cents(),
-        changed: change_cost(input, job, call, firm, day),
+        changed: change_cost(input, job, call, firm, day, agreed),
     })
 }
 
@@ -180,11 +222,17 @@ pub(super) fn max_waiting_cost(input: &Input, job: &Job<'_>) -> i64 {
 }
 
 /// Returns the cost of departing from the previous plan.
-fn change_cost(input: &Input, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate) -> i64 {
+fn change_cost(
+    input: &Input,
+    job: &Job<'_>,
+    call: &PortCall,
+    firm: &Firm,
+    day: NaiveDate,
+    agreed: Option<Instant>,
+) -> i64 {
+    let stays = job.was_planned(&call.id, &firm.id, day) && agreed == job.agreed_hour();
     match job.former {
-        Some(former) if !job.was_planned(&call.id, &firm.id, day) => {
-            departure_cost(input, former.state)
-        }
+        Some(former) if !stays => departure_cost(input, former.state),
         _ => 0,
     }
 }

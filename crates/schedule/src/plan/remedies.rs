@@ -4,11 +4,13 @@
 //! Invariant: a line names everything that its way lacks.
 
 use super::capacity::Capacity;
+use super::crews::{Crew, seconds_up};
 use super::jobs::Job;
 use super::quote::{self, Obstacle};
 use crate::calls::PortCall;
 use crate::input::{Firm, Input};
 use crate::ports::{self, PortCode};
+use crate::solve::Window;
 use crate::time::{Eur, Instant};
 use chrono::{Days, NaiveDate};
 use std::collections::{BTreeMap, BTreeSet};
@@ -119,23 +121,21 @@ impl<'a> Remedies<'a> {
     pub(super) fn overcome(
         &mut self,
         call: &PortCall,
-        firm: &Firm,
+        at: usize,
         day: NaiveDate,
         obstacles: &[Obstacle],
     ) {
+        let crew = &self.capacity.candidates.crews[at];
+        let firm = crew.firm;
         if obstacles == [Obstacle::AfterDue] {
             self.add_earlier_call(firm, call.port);
         }
-        let Some(mut remedy) = self.remedy_of_firm(firm, call, day, obstacles) else {
+        let Some((mut remedy, window)) = self.remedy_of_crew(crew, call, day, obstacles) else {
             return;
         };
         let port = quote::port_of(call).name;
-        remedy.teams(
-            firm,
-            port,
-            day,
-            self.capacity.missing_teams(firm, call.port, day),
-        );
+        let teams = self.capacity.missing_teams(at, call.port, day, window);
+        remedy.teams(firm, port, day, teams);
         if let Some(excess_price) = self.excess_price(firm, call.port) {
             remedy.price(firm, port, day, excess_price);
         }
@@ -148,15 +148,16 @@ impl<'a> Remedies<'a> {
         self.add(kind, about, remedy);
     }
 
-    /// Returns the remedy; `None` where nothing helps: the hours of that day are over.
-    fn remedy_of_firm(
+    /// Returns the remedy with the hours that it gives; `None` where nothing helps: the hours
+    /// of that day are over.
+    fn remedy_of_crew(
         &self,
-        firm: &Firm,
+        crew: &Crew<'_>,
         call: &PortCall,
         day: NaiveDate,
         obstacles: &[Obstacle],
-    ) -> Option<Remedy> {
-        let port = quote::port_of(call);
+    ) -> Option<(Remedy, Window)> {
+        let (port, firm) = (quote::port_of(call), crew.firm);
         let (name, at) = (firm.display_name(), port.name);
         let mut remedy =
             Remedy(self.remedy_of_terms(firm, obstacles, &format!("at {at} on {day}")));
@@ -166,31 +167,64 @@ impl<'a> Remedies<'a> {
                 .0
                 .push(format!("{name} working at {at} on {weekday}, {day}"));
         }
-        let (now, job_h) = (self.input.now, self.input.weights.job_h);
-        let hours = [firm.first_hour, firm.last_hour];
-        let [opens, closes] = hours.map(|hour| Instant::at(day, hour, port.zone));
+        let (now, job_s) = (seconds_up(self.input.now), quote::job_s(self.input));
+        let work = quote::work_hours(crew, day, port.zone);
         let is_short = obstacles.contains(&Obstacle::Stay);
-        let (from, to) = if is_short {
+        let hours = if is_short {
             remedy
                 .0
                 .push(format!("a longer stay at {at} on {day}, for {name}"));
-            (opens, closes)
+            work
         } else {
-            (opens.max(call.eta), closes.min(call.etd))
+            quote::alongside(call, work)
         };
-        if firm.last_hour - firm.first_hour < job_h {
+        if work.to - work.from < job_s {
             return None;
         }
-        let notice_h = (to.hours_since(now) - job_h).floor();
-        if to.hours_since(from.max(now)) < job_h || notice_h < 0.0 {
+        let notice_h = ((hours.to - job_s - now) as f64 / 3600.0).floor();
+        if hours.to - hours.from.max(now) < job_s || notice_h < 0.0 {
             return None;
         }
+        let mut ready = now;
         if firm.lead_time_h > notice_h {
             remedy.0.push(format!(
                 "{name} coming to {at} at {notice_h} h notice, on {day}"
             ));
+            ready += (notice_h * 3600.0) as i64;
+        } else {
+            ready += (firm.lead_time_h * 3600.0).ceil() as i64;
         }
-        Some(remedy)
+        let from = hours.from.max(ready);
+        Some((remedy, Window { from, to: hours.to }))
+    }
+
+    /// Adds the end of a longer stay, if a team has time then.
+    pub(super) fn add_longer_stay(
+        &mut self,
+        call: &PortCall,
+        at: usize,
+        day: NaiveDate,
+        window: Window,
+        excess_price: i64,
+    ) {
+        let (port, crew) = (quote::port_of(call), &self.capacity.candidates.crews[at]);
+        let to = quote::work_hours(crew, day, port.zone).to;
+        let longer = Window { to, ..window };
+        let ends = self.capacity.earliest_end(at, call.port, day, longer);
+        let Some(ends) = ends.filter(|_| to > window.to) else {
+            return;
+        };
+        let until = port.zone.local(quote::instant(ends));
+        let (name, until) = (crew.firm.display_name(), until.format("%H:%M"));
+        let line = format!(
+            "a longer stay at {} on {day}, until {until}, for {name}",
+            port.name
+        );
+        let mut remedy = Remedy(vec![line]);
+        if excess_price >= 0 {
+            remedy.price(crew.firm, port.name, day, excess_price);
+        }
+        self.add(1, day, remedy);
     }
 
     /// Changes that a firm needs at any place.
@@ -255,16 +289,20 @@ impl<'a> Remedies<'a> {
     /// there and the firm's terms allowed it.
     fn first_day(&self, firm: &Firm, port: PortCode) -> Option<NaiveDate> {
         let zone = ports::zone(port);
-        let (now, job_h) = (self.input.now, self.input.weights.job_h);
-        let ready = now.plus_hours(firm.lead_time_h);
+        let now = self.input.now;
+        let ready = seconds_up(now.plus_hours(firm.lead_time_h));
         let today = now.date(zone);
         let mut days = (0..DAYS_AHEAD).filter_map(|ahead| today.checked_add_days(Days::new(ahead)));
         days.find(|day| {
-            let hours = [firm.first_hour, firm.last_hour];
-            let [opens, closes] = hours.map(|hour| Instant::at(*day, hour, zone));
-            firm.works(*day)
-                && closes.hours_since(opens.max(ready)) >= job_h
-                && self.capacity.missing_teams(firm, port, *day) == 0
+            let could_come = |(at, crew): (usize, &Crew<'_>)| {
+                let work = quote::work_hours(crew, *day, zone);
+                let from = work.from.max(ready);
+                let window = Window { from, to: work.to };
+                crew.serves(port)
+                    && work.to - from >= quote::job_s(self.input)
+                    && self.capacity.missing_teams(at, port, *day, window) == 0
+            };
+            firm.works(*day) && self.capacity.crews_of(firm).any(could_come)
         })
     }
 
@@ -275,7 +313,13 @@ impl<'a> Remedies<'a> {
             never.push(Obstacle::Flag);
         }
         let licence = self.job.vessel.licence.as_ref();
-        if licence.is_some_and(|asked| !firm.licences.contains(asked)) {
+        let lacks = |asked| {
+            !self
+                .capacity
+                .crews_of(firm)
+                .any(|(_, crew)| crew.holds(asked))
+        };
+        if licence.is_some_and(lacks) {
             never.push(Obstacle::Licence);
         }
         let has_declined = self.input.declined.iter().any(|declined| {

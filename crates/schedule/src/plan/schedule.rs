@@ -48,10 +48,12 @@ pub struct PlannedJob {
     pub firm: String,
     /// The day, in the port's time.
     pub day: NaiveDate,
-    /// Beginning: the ship is alongside and the firm at work.
+    /// Beginning on board: the ship is alongside, and the team at work and there.
     pub from: Instant,
-    /// End.
+    /// End on board.
     pub to: Instant,
+    /// The team: its name, or a number from 1 among those that are alike.
+    pub team: String,
     /// The ship's heading alongside, if known.
     pub berth_heading: Option<BerthHeading>,
     /// Progress of the job.
@@ -152,6 +154,8 @@ pub struct Place {
     pub firm: String,
     /// The day.
     pub day: NaiveDate,
+    /// The beginning, if known.
+    pub hour: Option<Instant>,
 }
 
 /// A need that is due after the horizon.

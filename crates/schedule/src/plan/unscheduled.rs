@@ -5,29 +5,33 @@
 //! hopeless one is left out: hours that are over cannot be changed. There is
 //! always one remedy.
 
-use super::candidates::{Candidate, travel};
-use super::capacity::Capacity;
+use super::candidates::{Candidate, Candidates, travel};
+use super::capacity::{Capacity, Served};
 use super::jobs::Job;
 use super::quote::{self, Obstacle};
 use super::remedies::{Remedies, Remedy};
 use super::schedule::Unscheduled;
 use crate::calls::PortCall;
 use crate::input::{Firm, Input};
+use crate::ports;
+use crate::solve::Window;
 use chrono::NaiveDate;
 
 /// The most lines of either list.
 const MAX_LINES: usize = 8;
 
-/// Returns all jobs that are not in the plan, or planned after their due date;
-/// `unmet` is the cost of leaving each undone, in cents.
+/// Returns all jobs that are not in the plan, or planned after their due date.
 pub(super) fn unscheduled(
     input: &Input,
     jobs: &[Job<'_>],
-    made: &[Option<&Candidate<'_>>],
-    unmet: &[i64],
+    candidates: &Candidates<'_>,
+    assignment: &[Option<usize>],
 ) -> Vec<Unscheduled> {
-    let capacity = Capacity::from_plan(input, jobs, made);
-    let open = jobs.iter().zip(made).zip(unmet);
+    let capacity = Capacity::from_plan(candidates, jobs, assignment);
+    let made = assignment
+        .iter()
+        .map(|choice| choice.map(|choice| &candidates.all[choice]));
+    let open = jobs.iter().zip(made).zip(&candidates.problem.unmet);
     let open = open.filter(|((job, candidate), _)| match candidate {
         None => true,
         Some(candidate) => candidate.quote.late_days > 0 && !job.is_overdue(input.now.utc_date()),
@@ -124,9 +128,21 @@ impl Explanation<'_> {
         }
     }
 
+    /// Explains a firm's day by the crew that has the fewest obstacles.
     fn explain_day(&mut self, call: &PortCall, firm: &Firm, day: NaiveDate) {
         let (input, job) = (self.remedies.input, self.remedies.job);
-        match quote::quote(input, job, call, firm, day) {
+        let crews = self.remedies.capacity.crews_of(firm);
+        let quotes = crews
+            .filter(|(_, crew)| crew.serves(call.port))
+            .map(|(at, crew)| {
+                let quote = quote::quote(input, job, call, crew, day, None);
+                (quote.as_ref().err().map_or(0, Vec::len), at, quote)
+            });
+        let nearest = quotes.min_by_key(|(obstacles, at, _)| (*obstacles, *at));
+        let Some((_, crew, nearest)) = nearest else {
+            return;
+        };
+        match nearest {
             Ok(quote) => {
                 let travel = travel(firm, call.port);
                 // A late job is done in time for less than it is worth.
@@ -135,7 +151,7 @@ impl Explanation<'_> {
                 } else {
                     quote.cost() + travel - self.unmet
                 };
-                self.explain_capacity_or_price(firm, call, day, excess_price);
+                self.explain_capacity_or_price(crew, call, day, quote.window, excess_price);
             }
             Err(obstacles) => {
                 let is_late_only = obstacles == [Obstacle::AfterDue];
@@ -144,7 +160,7 @@ impl Explanation<'_> {
                         self.add_reason(describe_obstacle(job, call, firm, day, *obstacle));
                     }
                 }
-                self.remedies.overcome(call, firm, day, &obstacles);
+                self.remedies.overcome(call, crew, day, &obstacles);
             }
         }
     }
@@ -153,31 +169,84 @@ impl Explanation<'_> {
     /// too high.
     fn explain_capacity_or_price(
         &mut self,
-        firm: &Firm,
+        at: usize,
         call: &PortCall,
         day: NaiveDate,
+        window: Window,
         excess_price: i64,
     ) {
-        let (name, port) = (firm.display_name(), quote::port_of(call).name);
-        let teams = self.remedies.capacity.missing_teams(firm, call.port, day);
-        let others = self.remedies.capacity.ships_served(firm, day);
-        self.add_reason(if teams > 0 && !others.is_empty() {
-            format!("{name}'s teams of {day} go to {}", others.join(", "))
-        } else if firm.teams == 0 {
+        let capacity = self.remedies.capacity;
+        let crew = &capacity.candidates.crews[at];
+        let (name, port) = (crew.firm.display_name(), quote::port_of(call).name);
+        let teams = capacity.missing_teams(at, call.port, day, window);
+        let others = capacity.ships_near(at, day);
+        let today: Vec<&str> = others
+            .iter()
+            .filter(|other| other.day == day)
+            .map(|other| other.ship)
+            .collect();
+        let jobs =
+            (crew.teams().saturating_sub(crew.booked(day)) * crew.firm.jobs_a_team_day) as usize;
+        self.add_reason(if teams > 0 && today.len() >= jobs && !today.is_empty() {
+            format!("{name}'s teams of {day} go to {}", today.join(", "))
+        } else if crew.teams() == 0 {
             format!("{name} has no teams")
-        } else if teams > 0 {
+        } else if teams > 0 && jobs == 0 {
             format!("{name}'s teams of {day} are booked")
+        } else if teams > 0 {
+            self.describe_hours(call, name, window, &others)
         } else if excess_price >= 0 {
             format!("{name} at {port} on {day} costs more than leaving it undone")
         } else {
             format!("{name} at {port} on {day} was not found within the search limit")
         });
+        if teams > 0 {
+            self.remedies
+                .add_longer_stay(call, at, day, window, excess_price);
+        }
         let mut remedy = Remedy::default();
-        remedy.teams(firm, port, day, teams);
+        remedy.teams(crew.firm, port, day, teams);
         if excess_price >= 0 {
-            remedy.price(firm, port, day, excess_price);
+            remedy.price(crew.firm, port, day, excess_price);
         }
         self.remedies.add(0, day, remedy);
+    }
+
+    /// Returns why the hours of a day are not enough for teams that have jobs near it.
+    fn describe_hours(
+        &self,
+        call: &PortCall,
+        name: &str,
+        window: Window,
+        others: &[Served<'_>],
+    ) -> String {
+        let zone = quote::port_of(call).zone;
+        let [from, to] = [window.from, window.to].map(|at| zone.local(quote::instant(at)));
+        let job_h = self.remedies.input.weights.job_h;
+        let own = format!(
+            "{} can be served at {} from {} to {} only",
+            self.remedies.job.vessel.display_name(),
+            quote::port_of(call).name,
+            from.format("%H:%M"),
+            to.format("%H:%M on %Y-%m-%d"),
+        );
+        if others.is_empty() {
+            return format!("{name}'s teams are booked at hours that leave no {job_h} h: {own}");
+        }
+        let others = others.iter().map(|other| {
+            let port = ports::find(other.port).map_or("", |port| port.name);
+            let zone = ports::zone(other.port);
+            format!(
+                "{} at {port} from {} to {}",
+                other.ship,
+                zone.local(other.from).format("%H:%M"),
+                zone.local(other.to).format("%H:%M on %Y-%m-%d")
+            )
+        });
+        format!(
+            "{name}'s teams go to {}, and have no {job_h} h with the travel left: {own}",
+            others.collect::<Vec<_>>().join(", ")
+        )
     }
 
     fn add_reason(&mut self, because: String) {

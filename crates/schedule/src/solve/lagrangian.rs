@@ -2,8 +2,8 @@
 //! that the prices favour.
 //!
 //! The constraint that a need is met at most once is given a price. The rest
-//! falls into the firms' days, on each of which the teams take the best loads
-//! of jobs; that is exact. Such a bound is at least that of the linear
+//! falls into the crews, of each of which the teams take the best stays; that is
+//! exact for the relaxed problem ([`super::relaxation`]). Such a bound is at least that of the linear
 //! relaxation with x ≤ y for each job and its team (A. M. Geoffrion,
 //! "Lagrangean relaxation for integer programming", Mathematical Programming
 //! Study 2, 1974, Theorem 1). Prices follow the mean of the subproblems'
@@ -17,6 +17,7 @@
 
 use super::bound::{self, Bound};
 use super::problem::Problem;
+use super::relaxation::Relaxation;
 use super::subproblem::{Solution, Subproblem};
 use super::work_limit::WorkLimit;
 
@@ -38,6 +39,7 @@ const LEAST_WEIGHT: f64 = 1e-3;
 /// Prices of needs in cents, at the best bound so far.
 pub(super) struct Prices<'a> {
     problem: &'a Problem,
+    relaxation: &'a Relaxation<'a>,
     subproblem: Subproblem<'a>,
     at: Vec<f64>,
     cost: f64,
@@ -55,8 +57,9 @@ pub(super) struct Prices<'a> {
 
 impl<'a> Prices<'a> {
     /// Starts with the cost of each need's cheapest choice alone.
-    pub(super) fn new(problem: &'a Problem) -> Prices<'a> {
-        let subproblem = Subproblem::new(problem);
+    pub(super) fn new(relaxation: &'a Relaxation<'a>) -> Prices<'a> {
+        let problem = relaxation.problem;
+        let subproblem = Subproblem::new(relaxation);
         let most: Vec<f64> = problem.unmet.iter().map(|unmet| *unmet as f64).collect();
         let mut at = most.clone();
         for choice in &problem.choices {
@@ -72,6 +75,7 @@ impl<'a> Prices<'a> {
         Prices {
             met: met(problem, &solution),
             problem,
+            relaxation,
             subproblem,
             at,
             cost: solution.cost,
@@ -209,7 +213,7 @@ impl<'a> Prices<'a> {
         let whole: Vec<i64> = prices
             .map(|(price, unmet)| (price.round() as i64).clamp(0, *unmet))
             .collect();
-        bound::compute(self.problem, &whole)
+        bound::compute(self.relaxation, &whole)
     }
 }
 
@@ -239,7 +243,8 @@ mod tests {
             steps in 0..200_usize,
         ) {
             let best = solve(&problem);
-            let mut prices = Prices::new(&problem);
+            let relaxation = Relaxation::new(&problem);
+            let mut prices = Prices::new(&relaxation);
             prices.improve(best.cost, steps, &mut WorkLimit::new(1_000_000));
             let found = prices.bound();
             prop_assert!(found.cost <= best.cost, "{} {}", found.cost, best.cost);
@@ -252,7 +257,8 @@ mod tests {
         #[test]
         fn more_steps_make_the_bound_no_worse(problem in problems(), steps in 0..100_usize) {
             let known = problem.unmet.iter().sum();
-            let mut prices = Prices::new(&problem);
+            let relaxation = Relaxation::new(&problem);
+            let mut prices = Prices::new(&relaxation);
             let mut work = WorkLimit::new(1_000_000);
             prices.improve(known, steps, &mut work);
             let before = prices.cost;

@@ -1,7 +1,7 @@
 //! Large neighbourhood search: needs that compete for the same teams are solved
 //! again, while all others are fixed.
 
-use super::branch_and_bound;
+use super::branch_and_bound::Models;
 use super::open::Open;
 use super::problem::{Assignment, Problem};
 use super::work_limit::WorkLimit;
@@ -13,13 +13,14 @@ const NEIGHBOURHOOD_SIZE: usize = 60;
 
 /// Improves all neighbourhoods once.
 pub(super) fn improve(
-    problem: &Problem,
+    models: &mut Models<'_>,
     open: &Open,
     known: Assignment,
     work: &mut WorkLimit,
 ) -> Assignment {
+    let problem = models.relaxation.problem;
     let open_days = find_open_days(problem, &open.choices);
-    let mut needs_by_day: Vec<Vec<usize>> = vec![Vec::new(); problem.teams.len()];
+    let mut needs_by_day: Vec<Vec<usize>> = vec![Vec::new(); problem.days.len()];
     for (need, days) in open_days.iter().enumerate() {
         for day in days {
             needs_by_day[*day].push(need);
@@ -56,17 +57,18 @@ pub(super) fn improve(
                 .map(|(free, open)| *free && *open)
                 .collect(),
         };
-        found = branch_and_bound::solve_parts(problem, &some, found, NEIGHBOURHOOD_EFFORT, work)
+        found = models
+            .solve_parts(&some, &found, NEIGHBOURHOOD_EFFORT, work)
             .assignment;
     }
     found
 }
 
-/// Returns the firms' days on which each need has an open choice.
+/// Returns the crews' days on which each need has an open choice.
 fn find_open_days(problem: &Problem, open: &[bool]) -> Vec<Vec<usize>> {
     let mut open_days: Vec<Vec<usize>> = vec![Vec::new(); problem.unmet.len()];
     for (choice, open) in problem.choices.iter().zip(open) {
-        let day = problem.visits[choice.visit].firm_day;
+        let day = problem.visits[choice.visit].day;
         if *open && !open_days[choice.need].contains(&day) {
             open_days[choice.need].push(day);
         }
@@ -74,7 +76,7 @@ fn find_open_days(problem: &Problem, open: &[bool]) -> Vec<Vec<usize>> {
     open_days
 }
 
-/// Returns the needs nearest to one, itself first: those open to the same firms'
+/// Returns the needs nearest to one, itself first: those open to the same crews'
 /// days, then those open to the same days as these.
 fn find_neighbourhood(
     seed: usize,

@@ -1,12 +1,18 @@
 //! The assignment problem in numbers only, without names.
 //!
+//! A crew is a number of teams that are alike: with the same hours, places and
+//! skills. A choice gives a need to a crew's day, within a window. A team does
+//! one job after the other, and travels in between; its days follow each other
+//! in the calendar's order.
+//!
 //! Callers ensure that a [`Problem`] has every index within its list, no
-//! negative cost, and capacity for at least one job on each visit. Costs are
-//! whole cents, so that sums are exact and a bound can be rounded.
+//! negative cost or time, capacity for at least one job a day, and a window
+//! long enough for the job of each choice. Travel times keep the triangle
+//! inequality, so that a job less never makes a route longer. Costs are whole
+//! cents and times whole seconds, so that sums are exact and a bound can be
+//! rounded.
 
-use std::collections::BTreeMap;
-
-/// One way to meet one need: a visit and a cost.
+/// One way to meet one need: a visit, a window and a cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choice {
     /// Index of the need.
@@ -15,69 +21,97 @@ pub struct Choice {
     pub visit: usize,
     /// Cost without the visit's travel.
     pub cost: i64,
+    /// Hours within which the whole job is done.
+    pub window: Window,
 }
 
-/// A firm's presence in one port on one day.
+/// A span of time, seconds since 1970.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Window {
+    /// Beginning.
+    pub from: i64,
+    /// End.
+    pub to: i64,
+}
+
+/// A crew's presence at one place on one day.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Visit {
-    /// Index of the firm and day.
-    pub firm_day: usize,
+    /// Index of the crew's day.
+    pub day: usize,
+    /// The place, an index of the crew's travel times.
+    pub place: usize,
     /// Cost of sending one team.
     pub travel: i64,
-    /// Jobs per team and day there.
-    pub jobs_a_team: u32,
 }
 
-/// The problem: at most one choice for each need, within the teams of each firm
-/// and day.
+/// A day of a crew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CrewDay {
+    /// Index of the crew.
+    pub crew: usize,
+    /// The day, in the calendar's order.
+    pub date: i32,
+    /// Number of teams at work.
+    pub teams: u32,
+}
+
+/// Teams that are alike.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Crew {
+    /// Number of teams.
+    pub teams: u32,
+    /// The most jobs of a team on a day.
+    pub jobs_a_team: u32,
+    /// Seconds from each place to each, and between two berths of one.
+    pub travel_s: Vec<Vec<i64>>,
+    /// Hours of a team that are given away.
+    pub taken: Vec<TakenHours>,
+}
+
+/// Hours of one team that are given away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TakenHours {
+    /// The day.
+    pub date: i32,
+    /// The hours.
+    pub window: Window,
+    /// The place; where the team happens to be, if absent.
+    pub place: Option<usize>,
+}
+
+/// The problem: at most one choice for each need, such that the teams of each
+/// crew can be where they are to be.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Problem {
+    /// Seconds of a job.
+    pub job_s: i64,
     /// Cost of leaving each need unmet.
     pub unmet: Vec<i64>,
     /// All choices.
     pub choices: Vec<Choice>,
     /// All visits that a choice may ask for.
     pub visits: Vec<Visit>,
-    /// Number of teams for each firm and day.
-    pub teams: Vec<u32>,
+    /// All crews' days that a visit is on.
+    pub days: Vec<CrewDay>,
+    /// All crews.
+    pub crews: Vec<Crew>,
 }
 
 /// The index of the choice for each need, or none.
 pub type Assignment = Vec<Option<usize>>;
 
 impl Problem {
-    /// Returns the cost of an assignment; `None` when it needs more teams than
-    /// there are.
-    pub fn cost(&self, assignment: &[Option<usize>]) -> Option<i64> {
-        self.cost_of(assignment.iter().copied().enumerate())
+    /// Returns the cost of an assignment without travel.
+    pub(super) fn cost_without_travel(&self, assignment: &[Option<usize>]) -> i64 {
+        let each = assignment.iter().zip(&self.unmet);
+        each.map(|(choice, unmet)| choice.map_or(*unmet, |choice| self.choices[choice].cost))
+            .sum()
     }
 
-    /// Returns the cost of some needs with these choices, as if there were no others.
-    pub(super) fn cost_of(
-        &self,
-        choices: impl Iterator<Item = (usize, Option<usize>)>,
-    ) -> Option<i64> {
-        let mut cost = 0;
-        let mut jobs: BTreeMap<usize, u32> = BTreeMap::new();
-        for (need, choice) in choices {
-            let Some(choice) = choice.map(|index| self.choices[index]) else {
-                cost += self.unmet[need];
-                continue;
-            };
-            cost += choice.cost;
-            *jobs.entry(choice.visit).or_default() += 1;
-        }
-        let mut sent: BTreeMap<usize, u32> = BTreeMap::new();
-        for (visit, jobs) in jobs {
-            let visit = self.visits[visit];
-            let teams = jobs.div_ceil(visit.jobs_a_team);
-            cost += i64::from(teams) * visit.travel;
-            *sent.entry(visit.firm_day).or_default() += teams;
-        }
-        let within = sent
-            .iter()
-            .all(|(firm_day, sent)| *sent <= self.teams[*firm_day]);
-        within.then_some(cost)
+    /// Returns the crew's day of a choice.
+    pub(super) fn day_of(&self, choice: usize) -> usize {
+        self.visits[self.choices[choice].visit].day
     }
 
     /// Indices of each need's choices, the cheapest first.
@@ -101,11 +135,11 @@ impl Problem {
         of
     }
 
-    /// Indices of each firm's day's visits.
+    /// Indices of each crew's day's visits.
     pub(super) fn by_day(&self) -> Vec<Vec<usize>> {
-        let mut of = vec![Vec::new(); self.teams.len()];
+        let mut of = vec![Vec::new(); self.days.len()];
         for (index, visit) in self.visits.iter().enumerate() {
-            of[visit.firm_day].push(index);
+            of[visit.day].push(index);
         }
         of
     }
@@ -114,30 +148,70 @@ impl Problem {
 /// Small problems for tests.
 #[cfg(test)]
 pub(super) mod test_problems {
-    use super::{Choice, Problem, Visit};
+    use super::{Choice, Crew, CrewDay, Problem, Visit, Window};
     use proptest::collection::vec;
     use proptest::prelude::*;
 
+    const HOUR: i64 = 3600;
+
+    /// Up to five needs of two hours, two crews of two places each, three days.
     pub(in crate::solve) fn problems() -> impl Strategy<Value = Problem> {
-        let visits = vec((0..4_usize, 0..900_i64, 1..=3_u32), 6);
-        let choices = vec((0..5_usize, 0..6_usize, 0..2000_i64), 0..13);
-        (vec(0..3000_i64, 5), visits, vec(0..3_u32, 4), choices).prop_map(
-            |(unmet, visits, teams, choices)| Problem {
+        let crew = (0..3_u32, 1..=3_u32, 0..12_i64);
+        let choice = (0..5_usize, 0..12_usize, 0..2000_i64, 8..16_i64, 0..8_i64);
+        let travel = vec(0..900_i64, 12);
+        (
+            vec(0..3000_i64, 5),
+            vec(crew, 2),
+            travel,
+            vec(choice, 0..13),
+        )
+            .prop_map(|(unmet, crews, travel, choices)| Problem {
+                job_s: 2 * HOUR,
                 unmet,
-                visits: visits
+                // Visit 6c + 2d + p is crew c, day d, place p.
+                visits: travel
                     .into_iter()
-                    .map(|(firm_day, travel, jobs_a_team)| Visit {
-                        firm_day,
+                    .enumerate()
+                    .map(|(at, travel)| Visit {
+                        day: at / 2,
+                        place: at % 2,
                         travel,
-                        jobs_a_team,
                     })
                     .collect(),
-                teams,
+                days: (0..6)
+                    .map(|day| CrewDay {
+                        crew: day / 3,
+                        date: i32::try_from(day % 3).unwrap(),
+                        teams: crews[day / 3].0,
+                    })
+                    .collect(),
+                crews: crews
+                    .into_iter()
+                    .map(|(teams, jobs_a_team, apart_h)| Crew {
+                        teams,
+                        jobs_a_team,
+                        travel_s: vec![
+                            vec![HOUR / 2, apart_h * HOUR],
+                            vec![apart_h * HOUR, HOUR / 2],
+                        ],
+                        taken: Vec::new(),
+                    })
+                    .collect(),
                 choices: choices
                     .into_iter()
-                    .map(|(need, visit, cost)| Choice { need, visit, cost })
+                    .map(|(need, visit, cost, from_h, more_h)| {
+                        let midnight = i64::try_from(visit / 2 % 3).unwrap() * 24 * HOUR;
+                        let from = midnight + from_h * HOUR;
+                        let to = from + (2 + more_h) * HOUR;
+                        let window = Window { from, to };
+                        Choice {
+                            need,
+                            visit,
+                            cost,
+                            window,
+                        }
+                    })
                     .collect(),
-            },
-        )
+            })
     }
 }

@@ -1,130 +1,275 @@
 //! The assignment under search, and greedy starting points.
 //!
-//! Invariant: every result is feasible, and depends on the problem alone.
+//! Invariant: the teams can do what is assigned, and travel costs what their
+//! routes cost; both depend on the problem alone.
 
 use super::problem::{Assignment, Problem};
+use super::routes::{self, Answer, Spell};
 use super::work_limit::WorkLimit;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, HashMap};
 
-/// An assignment under search, with the load of each visit and each firm's day.
+/// The most answers that are kept.
+const MAX_KEPT: usize = 400_000;
+/// Work of a step of a route's search, in looks at a choice.
+const STEP: usize = 2;
+
+/// Answers of the routes' search, kept by the choices of a spell.
+pub(super) struct Router<'a> {
+    problem: &'a Problem,
+    max_travel_s: Vec<i64>,
+    kept: RefCell<HashMap<Box<[usize]>, (Option<i64>, bool)>>,
+    pub(super) work: RefCell<usize>,
+}
+
+impl<'a> Router<'a> {
+    pub(super) fn new(problem: &'a Problem) -> Router<'a> {
+        Router {
+            problem,
+            max_travel_s: problem.crews.iter().map(routes::max_travel_s).collect(),
+            kept: RefCell::new(HashMap::new()),
+            work: RefCell::new(0),
+        }
+    }
+
+    /// Returns the cost of travel for some choices of one crew, none where its teams cannot
+    /// do them, and whether that is exact. The choices are in ascending order.
+    pub(super) fn cost(&self, choices: &[usize]) -> (Option<i64>, bool) {
+        let [first, rest @ ..] = choices else {
+            return (Some(0), true);
+        };
+        let day = self.problem.days[self.problem.day_of(*first)];
+        if rest.is_empty() && self.problem.crews[day.crew].taken.is_empty() {
+            let travel = self.problem.visits[self.problem.choices[*first].visit].travel;
+            return ((day.teams > 0).then_some(travel), true);
+        }
+        if let Some(known) = self.kept.borrow().get(choices) {
+            return *known;
+        }
+        let answer = self.routes(choices);
+        *self.work.borrow_mut() += STEP * answer.steps;
+        let known = (answer.routes.map(|routes| routes.cost), answer.exact);
+        let mut kept = self.kept.borrow_mut();
+        if kept.len() >= MAX_KEPT {
+            kept.clear();
+        }
+        kept.insert(choices.into(), known);
+        known
+    }
+
+    /// Returns the routes for some choices of one crew.
+    pub(super) fn routes(&self, choices: &[usize]) -> Answer {
+        let crew = self.problem.days[self.problem.day_of(choices[0])].crew;
+        routes::find(&Spell::new(self.problem, crew, choices))
+    }
+
+    /// Splits a crew's choices, by date, into spells.
+    pub(super) fn spells(
+        &self,
+        crew: usize,
+        by_date: &BTreeMap<i32, Vec<usize>>,
+    ) -> Vec<Vec<usize>> {
+        let mut spells = Vec::new();
+        let mut dates: Vec<i32> = by_date.keys().copied().collect();
+        while let Some(&date) = dates.first() {
+            let (first, last) = self.reach(crew, by_date, date, None);
+            spells.push(choices_within(by_date, first, last));
+            dates.retain(|date| *date > last);
+        }
+        spells
+    }
+
+    /// Returns the first and last date of the spell around a date.
+    fn reach(
+        &self,
+        crew: usize,
+        by_date: &BTreeMap<i32, Vec<usize>>,
+        date: i32,
+        more: Option<usize>,
+    ) -> (i32, i32) {
+        let travel_s = self.max_travel_s[crew];
+        // Dates of two zones are 26 hours apart at most, and a day has 24.
+        let reach = i32::try_from(1 + (travel_s + 26 * 3600) / (24 * 3600)).unwrap_or(i32::MAX);
+        let (mut first, mut last) = (date, date);
+        let here = by_date
+            .get(&date)
+            .into_iter()
+            .flatten()
+            .copied()
+            .chain(more);
+        let windows = here.map(|choice| self.problem.choices[choice].window);
+        let (mut from, mut to) = windows.fold((i64::MAX, i64::MIN), |(from, to), window| {
+            (from.min(window.from), to.max(window.to))
+        });
+        loop {
+            let near = by_date.range(first.saturating_sub(reach)..=last.saturating_add(reach));
+            let mut has_grown = false;
+            for (&other, choices) in near {
+                if (first..=last).contains(&other) {
+                    continue;
+                }
+                let windows = || {
+                    choices
+                        .iter()
+                        .map(|choice| self.problem.choices[*choice].window)
+                };
+                let begins = windows()
+                    .map(|window| window.from)
+                    .min()
+                    .unwrap_or(i64::MAX);
+                let ends = windows().map(|window| window.to).max().unwrap_or(i64::MIN);
+                let meets = if other < first {
+                    ends.saturating_add(travel_s) > from
+                } else {
+                    to.saturating_add(travel_s) > begins
+                };
+                if meets {
+                    // Days in between belong to it as well.
+                    for (_, choices) in by_date.range(other.min(first)..=other.max(last)) {
+                        for choice in choices {
+                            let window = self.problem.choices[*choice].window;
+                            (from, to) = (from.min(window.from), to.max(window.to));
+                        }
+                    }
+                    (first, last) = (first.min(other), last.max(other));
+                    has_grown = true;
+                    break;
+                }
+            }
+            if !has_grown {
+                return (first, last);
+            }
+        }
+    }
+}
+
+/// Returns the choices between two dates, in ascending order.
+fn choices_within(by_date: &BTreeMap<i32, Vec<usize>>, first: i32, last: i32) -> Vec<usize> {
+    let mut choices: Vec<usize> = by_date
+        .range(first..=last)
+        .flat_map(|(_, it)| it)
+        .copied()
+        .collect();
+    choices.sort_unstable();
+    choices
+}
+
+/// An assignment under search, with the choices of each crew by date.
 pub(super) struct State<'a> {
     pub(super) problem: &'a Problem,
+    pub(super) router: &'a Router<'a>,
     pub(super) chosen: Assignment,
-    pub(super) jobs: Vec<u32>,
-    pub(super) sent: Vec<u32>,
-    pub(super) at_visit: Vec<Vec<usize>>,
-    pub(super) visits_of: Vec<Vec<usize>>,
+    crews: Vec<BTreeMap<i32, Vec<usize>>>,
     /// Moves since the last settled state: the need, and its choice before.
     moves: Vec<(usize, Option<usize>)>,
 }
 
-/// Improves greedily: each need in turn takes its cheapest choice, until none
-/// can improve.
-pub(super) fn greedy(
-    problem: &Problem,
-    begin: Assignment,
-    order: &[Vec<usize>],
-    work: &mut WorkLimit,
-) -> Assignment {
-    let mut state = State::new(problem, begin);
-    loop {
-        let mut moved = false;
-        for need in 0..problem.unmet.len() {
-            work.spend(order[need].len());
-            moved |= state.improve_one(need, order);
-        }
-        state.settle();
-        if !moved || work.is_spent() {
-            return state.chosen;
-        }
-    }
-}
-
-/// Takes the first of these choices for each need for which there is a team.
-pub(super) fn take_first_feasible(problem: &Problem, choices: &[usize]) -> Assignment {
-    let mut state = State::new(problem, vec![None; problem.unmet.len()]);
-    for &choice in choices {
-        let need = problem.choices[choice].need;
-        if state.chosen[need].is_none() && state.price_of(choice).is_some() {
-            state.put(need, choice);
-        }
-    }
-    state.chosen
-}
-
 impl<'a> State<'a> {
-    pub(super) fn new(problem: &'a Problem, begin: Assignment) -> State<'a> {
+    /// Begins with an assignment that the teams can do.
+    pub(super) fn new(router: &'a Router<'a>, begin: &[Option<usize>]) -> State<'a> {
+        let problem = router.problem;
         let mut state = State {
             problem,
+            router,
             chosen: vec![None; problem.unmet.len()],
-            jobs: vec![0; problem.visits.len()],
-            sent: vec![0; problem.teams.len()],
-            at_visit: vec![Vec::new(); problem.visits.len()],
-            visits_of: problem.by_day(),
+            crews: vec![BTreeMap::new(); problem.crews.len()],
             moves: Vec::new(),
         };
-        for (need, choice) in begin.into_iter().enumerate() {
-            if let Some(choice) = choice {
-                state.put(need, choice);
-            }
+        for choice in begin.iter().flatten() {
+            state.set(problem.choices[*choice].need, Some(*choice));
         }
         state.settle();
         state
     }
 
-    /// Returns the cost of adding a choice, travel included; `None` when no team is left.
+    /// Returns the choices of the spell around a choice's day, that one aside.
+    pub(super) fn spell_around(&self, choice: usize) -> Vec<usize> {
+        let day = self.problem.days[self.problem.day_of(choice)];
+        let by_date = &self.crews[day.crew];
+        let (first, last) = self.router.reach(day.crew, by_date, day.date, Some(choice));
+        let mut spell = choices_within(by_date, first, last);
+        spell.retain(|other| *other != choice);
+        spell
+    }
+
+    /// Returns the cost of adding a choice, travel included; `None` when no team can do it.
     pub(super) fn price_of(&self, choice: usize) -> Option<i64> {
-        let choice = self.problem.choices[choice];
-        Some(choice.cost + self.price_of_place(choice.visit)?)
+        self.price_within(&self.spell_around(choice), choice, None)
     }
 
-    /// Returns the cost of one more place on a visit; `None` when no team is left.
-    pub(super) fn price_of_place(&self, at: usize) -> Option<i64> {
-        let visit = self.problem.visits[at];
-        if !self.jobs[at].is_multiple_of(visit.jobs_a_team) {
-            return Some(0);
-        }
-        let free = self.sent[visit.firm_day] < self.problem.teams[visit.firm_day];
-        free.then_some(visit.travel)
+    /// Returns the cost of adding a choice to its spell, instead of another if that is
+    /// given, without the saving of that one's own cost.
+    pub(super) fn price_within(
+        &self,
+        spell: &[usize],
+        choice: usize,
+        instead_of: Option<usize>,
+    ) -> Option<i64> {
+        let before = self.router.cost(spell).0?;
+        let mut with: Vec<usize> = spell
+            .iter()
+            .copied()
+            .filter(|other| Some(*other) != instead_of)
+            .collect();
+        let at = with.partition_point(|other| *other < choice);
+        with.insert(at, choice);
+        Some(self.problem.choices[choice].cost + self.router.cost(&with).0? - before)
     }
 
-    /// Returns true if a visit has a team with one job there.
-    pub(super) fn has_single(&self, visit: usize) -> bool {
-        let others = self.jobs[visit].checked_sub(1);
-        others.is_some_and(|others| others.is_multiple_of(self.problem.visits[visit].jobs_a_team))
-    }
-
-    /// Assigns a choice to a need, with or without a team for it, and returns
-    /// its cost.
-    pub(super) fn put(&mut self, need: usize, choice: usize) -> i64 {
-        let chosen = self.problem.choices[choice];
-        let visit = self.problem.visits[chosen.visit];
-        let sends = self.jobs[chosen.visit].is_multiple_of(visit.jobs_a_team);
-        self.jobs[chosen.visit] += 1;
-        self.at_visit[chosen.visit].push(need);
-        self.chosen[need] = Some(choice);
-        self.moves.push((need, None));
-        if sends {
-            self.sent[visit.firm_day] += 1;
-            return chosen.cost + visit.travel;
-        }
-        chosen.cost
+    /// Assigns a choice to a need that has none, if a team can do it, and returns the cost.
+    pub(super) fn put(&mut self, need: usize, choice: usize) -> Option<i64> {
+        let price = self.price_of(choice)?;
+        self.set(need, Some(choice));
+        Some(price)
     }
 
     /// Removes a need's choice, and returns the saving.
     pub(super) fn take(&mut self, need: usize) -> i64 {
-        let Some(choice) = self.chosen[need].take() else {
+        let Some(choice) = self.chosen[need] else {
             return self.problem.unmet[need];
         };
-        self.moves.push((need, Some(choice)));
-        let choice = self.problem.choices[choice];
-        let visit = self.problem.visits[choice.visit];
-        self.jobs[choice.visit] -= 1;
-        self.at_visit[choice.visit].retain(|other| *other != need);
-        if self.jobs[choice.visit].is_multiple_of(visit.jobs_a_team) {
-            self.sent[visit.firm_day] -= 1;
-            return choice.cost + visit.travel;
+        self.set(need, None);
+        let own = self.problem.choices[choice].cost;
+        // Where the search for routes is given up, the saving is not known.
+        self.price_of(choice).unwrap_or(own)
+    }
+
+    fn set(&mut self, need: usize, choice: Option<usize>) {
+        let before = std::mem::replace(&mut self.chosen[need], choice);
+        self.moves.push((need, before));
+        if let Some(before) = before {
+            let day = self.problem.days[self.problem.day_of(before)];
+            let there = self.crews[day.crew].entry(day.date).or_default();
+            there.retain(|other| *other != before);
+            if there.is_empty() {
+                self.crews[day.crew].remove(&day.date);
+            }
         }
-        choice.cost
+        if let Some(choice) = choice {
+            let day = self.problem.days[self.problem.day_of(choice)];
+            self.crews[day.crew]
+                .entry(day.date)
+                .or_default()
+                .push(choice);
+        }
+    }
+
+    /// Returns the spells of all crews.
+    pub(super) fn spells(&self) -> Vec<Vec<usize>> {
+        let crews = self.crews.iter().enumerate();
+        crews
+            .flat_map(|(crew, by_date)| self.router.spells(crew, by_date))
+            .collect()
+    }
+
+    /// Returns the cost of the assignment; `None` where the teams cannot do it.
+    pub(super) fn cost(&self) -> Option<i64> {
+        let own = self.problem.cost_without_travel(&self.chosen);
+        let travel = self
+            .spells()
+            .into_iter()
+            .map(|spell| self.router.cost(&spell).0);
+        travel.sum::<Option<i64>>().map(|travel| own + travel)
     }
 
     /// Returns the mark for [`State::undo_to`].
@@ -135,10 +280,7 @@ impl<'a> State<'a> {
     /// Undoes all moves since a mark.
     pub(super) fn undo_to(&mut self, mark: usize) {
         for (need, before) in self.moves.split_off(mark).into_iter().rev() {
-            match before {
-                Some(choice) => self.put(need, choice),
-                None => self.take(need),
-            };
+            self.set(need, before);
         }
         self.moves.truncate(mark);
     }
@@ -170,14 +312,54 @@ impl<'a> State<'a> {
         let saved = self.take(need);
         let (choice, price) = self.best(need, order);
         if price < saved {
-            if let Some(choice) = choice {
-                self.put(need, choice);
+            if choice.is_some() {
+                self.set(need, choice);
             }
             return true;
         }
-        if let Some(before) = before {
-            self.put(need, before);
+        if before.is_some() {
+            self.set(need, before);
         }
         false
     }
+}
+
+/// Improves greedily: each need in turn takes its cheapest choice, until none
+/// can improve.
+pub(super) fn greedy(
+    router: &Router<'_>,
+    begin: &[Option<usize>],
+    order: &[Vec<usize>],
+    work: &mut WorkLimit,
+) -> Assignment {
+    let mut state = State::new(router, begin);
+    loop {
+        let mut moved = false;
+        for (need, choices) in order.iter().enumerate() {
+            if work.is_spent() {
+                return state.chosen;
+            }
+            moved |= state.improve_one(need, order);
+            work.spend(choices.len() * LOOK + router.work.take());
+        }
+        state.settle();
+        if !moved {
+            return state.chosen;
+        }
+    }
+}
+
+/// Work of a look at a choice with its spell.
+pub(super) const LOOK: usize = 20;
+
+/// Takes the first of these choices for each need that a team can do.
+pub(super) fn take_first_feasible(router: &Router<'_>, choices: &[usize]) -> Assignment {
+    let mut state = State::new(router, &vec![None; router.problem.unmet.len()]);
+    for &choice in choices {
+        let need = router.problem.choices[choice].need;
+        if state.chosen[need].is_none() {
+            state.put(need, choice);
+        }
+    }
+    state.chosen
 }

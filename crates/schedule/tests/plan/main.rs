@@ -6,6 +6,8 @@ mod confirmed;
 mod documented;
 mod explained;
 mod helpful;
+mod hours;
+mod watch;
 
 use binnacle_schedule::input::read;
 use binnacle_schedule::plan::{Schedule, plan};

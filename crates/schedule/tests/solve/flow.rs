@@ -1,5 +1,5 @@
 //! Minimum-cost flow by successive shortest paths: exact where a team does one
-//! job.
+//! job a day, and is anywhere in time for the next.
 
 use binnacle_schedule::solve::Problem;
 
@@ -62,7 +62,7 @@ impl Network {
 /// Source → needs → firm-days → sink, and an edge past them for each need.
 pub(crate) fn least_cost(problem: &Problem) -> i64 {
     let needs = problem.unmet.len();
-    let (source, sink) = (needs + problem.teams.len(), needs + problem.teams.len() + 1);
+    let (source, sink) = (needs + problem.days.len(), needs + problem.days.len() + 1);
     let mut network = Network {
         edges: Vec::new(),
         from: (0..=sink).map(|_| Vec::new()).collect(),
@@ -71,14 +71,14 @@ pub(crate) fn least_cost(problem: &Problem) -> i64 {
         network.add(source, need, 1, 0);
         network.add(need, sink, 1, *unmet);
     }
-    for (day, teams) in problem.teams.iter().enumerate() {
-        network.add(needs + day, sink, i64::from(*teams), 0);
+    for (at, day) in problem.days.iter().enumerate() {
+        network.add(needs + at, sink, i64::from(day.teams), 0);
     }
     for choice in &problem.choices {
         let visit = problem.visits[choice.visit];
         network.add(
             choice.need,
-            needs + visit.firm_day,
+            needs + visit.day,
             1,
             choice.cost + visit.travel,
         );

@@ -58,7 +58,9 @@ pub(super) async fn book_teams(
             counts && planned.get(&one.order_id) != Some(&id)
         });
         let days = firms::teams_taken(booked, firm.jobs_a_team_day).into_iter();
-        firm.taken = days.map(|(day, teams)| Taken { day, teams }).collect();
+        firm.taken = days
+            .map(|(day, teams)| Taken::whole_day(day, teams))
+            .collect();
     }
     Ok(())
 }

@@ -58,6 +58,8 @@ impl FormerJobs {
             call: call.to_string(),
             firm,
             day,
+            from: None,
+            team: None,
             state,
         });
         true
