@@ -170,6 +170,84 @@ fn each_fault_is_named_with_its_path() {
 }
 
 #[test]
+fn each_fault_of_teams_and_hours_is_named() {
+    let taken = |more: Value| {
+        let mut taken = json!({"day": "2026-12-01"});
+        taken
+            .as_object_mut()
+            .unwrap()
+            .extend(more.as_object().unwrap().clone());
+        json!([taken])
+    };
+    let cases = [
+        (
+            "teams",
+            json!("two"),
+            "firms[0].teams: neither a number of teams nor a list",
+        ),
+        (
+            "teams",
+            json!([{"hours": 3}]),
+            "firms[0].teams: neither a number of teams nor a list",
+        ),
+        (
+            "teams",
+            json!([{"name": "a"}, {"name": "a"}]),
+            "firms[0].teams: \"a\" appears twice",
+        ),
+        (
+            "teams",
+            json!([{"name": " "}]),
+            "firms[0].teams: a name is empty",
+        ),
+        (
+            "teams",
+            json!([{"name": "a", "first_hour": 19}]),
+            "firms[0].teams: the hours of \"a\" are not in order",
+        ),
+        (
+            "teams",
+            json!([{"name": "a", "ports": ["BEANR"]}]),
+            "firms[0].teams: \"a\" works at BEANR, which is not among",
+        ),
+        (
+            "teams",
+            json!([{"name": "a", "ports": []}]),
+            "firms[0].teams: no team works at NLRTM",
+        ),
+        (
+            "travel_times",
+            json!([{"from": "NLRTM", "to": "BEANR", "hours": 1}]),
+            "firms[0].travel_times: BEANR is not among its ports",
+        ),
+        (
+            "travel_times",
+            json!([{"from": "NLRTM", "to": "NLRTM", "hours": -1}]),
+            "firms[0].travel_times: -1 hours are not within",
+        ),
+        (
+            "taken",
+            taken(json!({"team": "a"})),
+            "firms[0].taken: there is no team \"a\"",
+        ),
+        (
+            "taken",
+            taken(json!({"hours": {"from": "2026-12-01T09:00:00Z", "to": "2026-12-01T09:00:00Z"}})),
+            "firms[0].taken: 2026-12-01T09:00:00Z is not after",
+        ),
+        (
+            "taken",
+            taken(json!({"hours": {"from": "2026-12-04T09:00:00Z", "to": "2026-12-04T10:00:00Z"}})),
+            "firms[0].taken: 2026-12-04T09:00:00Z to 2026-12-04T10:00:00Z are not hours of",
+        ),
+    ];
+    for (field, value, expected) in cases {
+        let said = complaint(&format!("/firms/0/{field}"), value);
+        assert!(said.starts_with(expected), "{said}\nis not\n{expected}");
+    }
+}
+
+#[test]
 fn a_call_in_the_past_is_refused() {
     let mut input = good();
     input["now"] = json!("2026-12-03T00:00:00Z");

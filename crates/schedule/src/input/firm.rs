@@ -67,7 +67,7 @@ pub struct Taken {
     /// Number of teams.
     #[serde(default = "default_jobs")]
     pub teams: u32,
-    /// Which team, where teams have names.
+    /// The team, where teams have names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub team: Option<String>,
     /// Hours of that day; the whole day, if absent.

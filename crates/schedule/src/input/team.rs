@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
     expecting = "neither a number of teams nor a list of teams with names"
 )]
 pub enum Teams {
-    /// So many that are alike.
+    /// A number of teams that are alike.
     Alike(u32),
     /// Each by name.
     Named(Vec<Team>),

@@ -1,6 +1,6 @@
 //! The candidates of each job, as an assignment problem.
 
-use super::confirmed::{Confirmation, Held};
+use super::confirmation::{Confirmation, Held};
 use super::crews::{self, Crew};
 use super::jobs::Job;
 use super::quote::{self, Quote};
@@ -89,7 +89,7 @@ impl<'a> Candidates<'a> {
             for &call in &job.calls {
                 for &crew in serving.get(&call.port).into_iter().flatten() {
                     for day in quote::days(call, input.now) {
-                        candidates.add_day(input, (at, job), call, crew, day, only_late);
+                        candidates.add_day(input, job, at, call, crew, day, only_late);
                     }
                 }
             }
@@ -112,10 +112,15 @@ impl<'a> Candidates<'a> {
     }
 
     /// Adds a job on a crew's day: at any hour, and at that which the firm was asked for.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "each is a different thing that is known"
+    )]
     fn add_day(
         &mut self,
         input: &Input,
-        (at, job): (usize, &Job<'a>),
+        job: &Job<'a>,
+        at: usize,
         call: &'a PortCall,
         crew: usize,
         day: NaiveDate,

@@ -1,7 +1,7 @@
 //! Changes from the previous plan, with their reasons.
 
 use super::candidates::{Candidate, Candidates};
-use super::confirmed::Confirmation;
+use super::confirmation::Confirmation;
 use super::jobs::Job;
 use super::quote;
 use super::schedule::{Change, ChangeKind, Place};

@@ -1,33 +1,15 @@
 //! Checks confirmed jobs: those that stand, and the reasons why others do not.
 
 use super::candidates::Candidates;
+use super::confirmation::{Confirmation, Held};
 use super::crews::Crew;
 use super::jobs::Job;
 use super::quote::{self, Obstacle, Quote};
-use crate::calls::PortCall;
 use crate::input::{FormerJob, Input, JobState};
 use crate::ports::PortCode;
 use crate::solve;
 use chrono::NaiveDate;
 use std::collections::BTreeMap;
-
-/// The state of a firm's confirmation.
-pub(super) enum Confirmation<'a> {
-    /// Not confirmed.
-    None,
-    /// It holds.
-    Holds(Held<'a>),
-    /// The job may move, for this cause; a job that is only late may move only
-    /// to a day in time.
-    Released { cause: String, only_late: bool },
-}
-
-/// A confirmed job, with each crew that may do it.
-pub(super) struct Held<'a> {
-    pub(super) call: &'a PortCall,
-    pub(super) day: NaiveDate,
-    pub(super) ways: Vec<(usize, Quote)>,
-}
 
 /// Checks the confirmation of each job. Where a firm confirmed more jobs than
 /// its teams can do, the more urgent and then the earlier due dates hold.

@@ -14,6 +14,7 @@
 mod candidates;
 mod capacity;
 mod changes;
+mod confirmation;
 mod confirmed;
 mod crews;
 mod jobs;

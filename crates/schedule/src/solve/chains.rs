@@ -26,6 +26,14 @@ const MAX_FORCED: usize = 40;
 /// Days of a crew that mostly do not matter to each other.
 const NEAR_DAYS: i32 = 1;
 
+/// Move of a need in a chain.
+#[derive(Clone, Copy)]
+struct Move {
+    need: usize,
+    /// Its new choice; none to leave it unmet.
+    choice: Option<usize>,
+}
+
 /// Limit of a chain's search.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reach {
@@ -59,8 +67,8 @@ pub(super) fn improve(
         work,
     };
     for _ in 0..ROUNDS {
-        while chains.from_all(Reach::Near) {}
-        let far = chains.from_all(Reach::Far);
+        while chains.move_all(Reach::Near) {}
+        let far = chains.move_all(Reach::Far);
         let forced = chains.force_all();
         if !far && !forced {
             break;
@@ -82,7 +90,7 @@ pub(super) struct Chains<'a> {
 impl Chains<'_> {
     /// Returns true if any need found a cheaper place; false when no work is left. For far
     /// chains the needs come first that cost most beyond their price.
-    fn from_all(&mut self, reach: Reach) -> bool {
+    fn move_all(&mut self, reach: Reach) -> bool {
         let mut moved = false;
         let needs = match reach {
             Reach::Near => (0..self.order.len()).collect(),
@@ -237,7 +245,11 @@ impl Chains<'_> {
     /// Extends a chain from a displaced need to all places where it may go.
     fn extend(&self, search: &mut Search, root: usize, at: usize, so_far: i64) {
         let (state, problem) = (&self.state, self.state.problem);
-        search.offer(so_far + problem.unmet[at], (at, None));
+        let unmet = Move {
+            need: at,
+            choice: None,
+        };
+        search.offer(so_far + problem.unmet[at], unmet);
         let used = search.used_days(problem, at);
         for &choice in &self.order[at] {
             search.looks += 1;
@@ -253,7 +265,11 @@ impl Chains<'_> {
             }
             let spell = state.spell_around(choice);
             if let Some(price) = state.price_within(&spell, choice, None) {
-                search.offer(so_far + price, (at, Some(choice)));
+                let placed = Move {
+                    need: at,
+                    choice: Some(choice),
+                };
+                search.offer(so_far + price, placed);
             }
             for &other in &spell {
                 let had = problem.choices[other];
@@ -297,8 +313,8 @@ struct Search {
     queue: BinaryHeap<Reverse<(i64, usize)>>,
     /// Cost of the best chain.
     cost: i64,
-    /// The last displaced need of that chain, and where it goes.
-    last: Option<(usize, Option<usize>)>,
+    /// Its last move.
+    last: Option<Move>,
     looks: usize,
 }
 
@@ -318,7 +334,7 @@ impl Search {
         used
     }
 
-    fn offer(&mut self, cost: i64, last: (usize, Option<usize>)) {
+    fn offer(&mut self, cost: i64, last: Move) {
         if cost < self.cost {
             (self.cost, self.last) = (cost, Some(last));
         }
@@ -347,30 +363,33 @@ fn apply(
     state: &mut State<'_>,
     need: usize,
     links: &BTreeMap<usize, Link>,
-    last: (usize, Option<usize>),
+    last: Move,
     limit: i64,
 ) -> Option<i64> {
     let mut moves = vec![last];
-    let mut at = last.0;
+    let mut at = last.need;
     while at != need {
         let link = links.get(&at)?;
         if moves.len() > links.len() {
             return None;
         }
-        moves.push((link.by, Some(link.choice)));
+        moves.push(Move {
+            need: link.by,
+            choice: Some(link.choice),
+        });
         at = link.by;
     }
     let mark = state.mark();
     let mut cost = 0;
-    for (moved, _) in &moves {
-        if *moved != need {
-            cost -= state.take(*moved);
+    for moved in &moves {
+        if moved.need != need {
+            cost -= state.take(moved.need);
         }
     }
-    for (moved, choice) in moves {
-        let price = match choice {
-            Some(choice) => state.put(moved, choice),
-            None => Some(state.problem.unmet[moved]),
+    for moved in moves {
+        let price = match moved.choice {
+            Some(choice) => state.put(moved.need, choice),
+            None => Some(state.problem.unmet[moved.need]),
         };
         let Some(price) = price else {
             state.undo_to(mark);

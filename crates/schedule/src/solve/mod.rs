@@ -18,7 +18,6 @@
 mod bound;
 mod branch_and_bound;
 mod chains;
-mod cuts;
 mod flow;
 mod lagrangian;
 mod neighbourhood;

@@ -14,11 +14,14 @@ const MAX_KEPT: usize = 400_000;
 /// Work of a step of a route's search, in looks at a choice.
 const STEP: usize = 2;
 
+/// The cost of some jobs' routes, if there are any, and whether it is exact.
+pub(super) type Travel = (Option<i64>, bool);
+
 /// Answers of the routes' search, kept by the choices of a spell.
 pub(super) struct Router<'a> {
     problem: &'a Problem,
     max_travel_s: Vec<i64>,
-    kept: RefCell<HashMap<Box<[usize]>, (Option<i64>, bool)>>,
+    kept: RefCell<HashMap<Box<[usize]>, Travel>>,
     pub(super) work: RefCell<usize>,
 }
 
@@ -34,7 +37,7 @@ impl<'a> Router<'a> {
 
     /// Returns the cost of travel for some choices of one crew, none where its teams cannot
     /// do them, and whether that is exact. The choices are in ascending order.
-    pub(super) fn cost(&self, choices: &[usize]) -> (Option<i64>, bool) {
+    pub(super) fn cost(&self, choices: &[usize]) -> Travel {
         let [first, rest @ ..] = choices else {
             return (Some(0), true);
         };

@@ -27,8 +27,8 @@ struct Seat {
 }
 
 /// The jobs of one team on a visit, with their total gain, which is negative.
-/// Where it goes to several places, the load at the next is linked, and the
-/// gain is that of all.
+/// For a team that goes to several places, the load at the next is linked, and
+/// the gain is that of all.
 struct Load {
     gain: f64,
     first: usize,

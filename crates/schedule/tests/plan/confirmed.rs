@@ -162,3 +162,55 @@ fn a_refusal_sends_the_job_to_the_next_firm() {
     assert_eq!(found.jobs[0].firm, "cheap");
     assert_eq!(found.changes[0].why, "dear declined");
 }
+
+#[test]
+fn of_two_agreed_hours_that_one_team_cannot_keep_the_first_due_stands() {
+    let former = |need: &str, call: &str, from: &str| {
+        json!({"needs": [need], "call": call, "firm": "f", "day": "2026-12-02", "state": "confirmed",
+               "from": format!("2026-12-02T{from}:00Z")})
+    };
+    let mut two = firm("f", 1500);
+    two["jobs_a_team_day"] = json!(2);
+    let found = |second: &str| {
+        schedule(json!({
+            "vessels": [vessel("v"), vessel("w")],
+            "needs": [need("n", "v", "2026-12-19"), need("m", "w", "2026-12-20")],
+            "port_calls": [call("c", "v", "2026-12-02", "2026-12-04"), call("d", "w", "2026-12-02", "2026-12-04")],
+            "firms": [two.clone()],
+            "former": [former("n", "c", "08:00"), former("m", "d", second)],
+        }))
+    };
+    let kept = found("11:30");
+    assert!(
+        kept.changes
+            .iter()
+            .all(|change| change.what == ChangeKind::Kept)
+    );
+    let moved = found("11:00");
+    assert_eq!(moved.jobs[0].from.to_string(), "2026-12-02T08:00:00Z");
+    let other = moved
+        .changes
+        .iter()
+        .find(|change| change.needs == ["m"])
+        .unwrap();
+    assert_eq!(other.what, ChangeKind::Moved);
+    assert_eq!(
+        other.why,
+        "f's teams have not the hours for it beside the other jobs agreed near 2026-12-02"
+    );
+}
+
+#[test]
+fn a_ship_that_is_not_there_at_the_agreed_hour_is_a_cause() {
+    let mut input = input("confirmed");
+    input["former"][0]["from"] = json!("2026-12-02T08:00:00Z");
+    assert_eq!(schedule(input.clone()).changes[0].what, ChangeKind::Kept);
+    input["port_calls"][0]["eta"] = json!("2026-12-02T09:00:00Z");
+    let found = schedule(input);
+    assert_eq!(found.changes[0].what, ChangeKind::Moved);
+    let why = &found.changes[0].why;
+    assert!(
+        why.ends_with("not long enough at the hour agreed, 2026-12-02T08:00:00Z"),
+        "{why}"
+    );
+}

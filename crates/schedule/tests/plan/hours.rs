@@ -215,7 +215,7 @@ fn an_agreed_hour_holds_and_others_go_around_it() {
             ]
         );
     }
-    // Nobody was told of a proposed hour.
+    // No firm knows of a proposed hour.
     assert_eq!(hours(&agreed("proposed"))[0].1, "2026-12-01T07:00:00Z");
 }
 
@@ -225,7 +225,7 @@ fn hours_that_are_taken_are_left_free() {
     let taken = |from: &str, to: &str, port: Value| {
         let taken = json!([{"day": "2026-12-01", "hours": {"from": from, "to": to, "port": port}}]);
         planned(std::slice::from_ref(&day), &firm(), |input| {
-            input["firms"][0]["taken"] = taken
+            input["firms"][0]["taken"] = taken;
         })
     };
     let here = taken(
@@ -259,6 +259,34 @@ fn a_team_with_a_name_has_its_own_hours_licence_and_ports() {
     assert_eq!(of("w").team, "Peeters");
     let late = found.jobs.iter().find(|job| job.team == "Jansen").unwrap();
     assert_eq!(late.from.to_string(), "2026-12-01T12:00:00Z");
+}
+
+#[test]
+fn the_watch_finds_a_team_in_two_places_and_a_ship_that_has_left() {
+    let day = |ship| {
+        call_at(
+            "NLRTM",
+            ship,
+            "2026-12-01T00:00:00Z",
+            "2026-12-02T00:00:00Z",
+        )
+    };
+    let input = json!({
+        "vessels": [vessel("u"), vessel("v")],
+        "needs": [need("n-u", "u", "2027-05-01"), need("n-v", "v", "2027-05-01")],
+        "port_calls": [day("u"), day("v")],
+        "firms": [firm()],
+    });
+    let good = to_value(schedule(input.clone())).unwrap();
+    let faults = |from: &str, to: &str| {
+        let mut plan = good.clone();
+        (plan["jobs"][1]["from"], plan["jobs"][1]["to"]) = (json!(from), json!(to));
+        watch::faults(&input, &plan)
+    };
+    let early = faults("2026-12-01T10:15:00Z", "2026-12-01T13:15:00Z");
+    assert!(early[0].starts_with("team 1 in two places"), "{early:?}");
+    let night = faults("2026-12-02T10:00:00Z", "2026-12-02T13:00:00Z");
+    assert!(night[0].starts_with("not alongside"), "{night:?}");
 }
 
 /// Two firms in four ports, with up to six ships alongside for hours or days.

@@ -63,86 +63,22 @@ fn by_id<'a>(list: &'a Value, id: &Value) -> &'a Value {
 /// The faults of a plan.
 pub(crate) fn faults(input: &Value, plan: &Value) -> Vec<String> {
     let mut faults = Vec::new();
-    let job_h = input["weights"]["job_h"].as_f64().unwrap_or(3.0);
-    let mut routes: BTreeMap<(String, String), Vec<&Value>> = BTreeMap::new();
+    let mut routes: BTreeMap<(&str, &str), Vec<&Value>> = BTreeMap::new();
     let mut met = Vec::new();
     for job in plan["jobs"].as_array().unwrap() {
-        let (from, to) = (at(&job["from"]), at(&job["to"]));
-        let mut check = |is_right: bool, what: &str| {
-            if !is_right {
-                faults.push(format!("{what}: {job}"));
-            }
-        };
-        let call = by_id(&input["port_calls"], &job["call"]);
-        let firm = by_id(&input["firms"], &job["firm"]);
-        check((to - from).num_seconds() as f64 == job_h * 3600.0, "length");
-        check(
-            at(&call["eta"]) <= from && to <= at(&call["etd"]),
-            "not alongside",
-        );
-        check(
-            call["vessel"] == job["vessel"] && call["port"] == job["port"],
-            "other call",
-        );
-        let (code, day) = (job["port"].as_str().unwrap(), job["day"].as_str().unwrap());
-        let day: NaiveDate = day.parse().unwrap();
-        let named = firm["teams"].as_array().into_iter().flatten();
-        let team = { named }.find(|team| team["name"] == job["team"]);
-        let own = |field: &str| team.map_or(&firm[field], |team| &team[field]);
-        let hour = |field, usual| {
-            let own = own(field).as_f64().or(firm[field].as_f64());
-            own.unwrap_or(usual)
-        };
-        let agreed = input["former"]
-            .as_array()
-            .into_iter()
-            .flatten()
-            .any(|former| {
-                former["needs"] == job["needs"]
-                    && former["from"] == job["from"]
-                    && former["state"] != "proposed"
-            });
-        let hours = (hour("first_hour", 8.0), hour("last_hour", 18.0));
-        let work = (local(day, hours.0, code), local(day, hours.1, code));
-        check(agreed || work.0 <= from && to <= work.1, "not at work");
-        let at_port = own("ports")
-            .as_array()
-            .or(firm["ports"].as_array())
-            .unwrap();
-        check(
-            at_port.iter().any(|it| it == code || it["port"] == code),
-            "not served",
-        );
-        if let Some(asked) = by_id(&input["vessels"], &job["vessel"])["licence"].as_str() {
-            let held = own("licences").as_array().or(firm["licences"].as_array());
-            check(
-                held.is_some_and(|held| held.iter().any(|one| one == asked)),
-                "no licence",
-            );
-        }
+        let wrong = job_faults(input, job);
+        faults.extend(wrong.into_iter().map(|what| format!("{what}: {job}")));
         for need in job["needs"].as_array().unwrap() {
-            check(!met.contains(need), "met twice");
-            met.push(need.clone());
-        }
-        let team = job["team"].as_str().unwrap();
-        match firm["teams"].as_array() {
-            Some(teams) => check(teams.iter().any(|one| one["name"] == team), "unknown team"),
-            None => {
-                let index: u64 = team.parse().unwrap();
-                check(
-                    (1..=firm["teams"].as_u64().unwrap_or(1)).contains(&index),
-                    "unknown team",
-                );
+            if met.contains(&need) {
+                faults.push(format!("met twice: {need}"));
             }
+            met.push(need);
         }
-        let firm = job["firm"].as_str().unwrap();
-        routes
-            .entry((firm.to_owned(), team.to_owned()))
-            .or_default()
-            .push(job);
+        let [firm, team] = ["firm", "team"].map(|name| job[name].as_str().unwrap());
+        routes.entry((firm, team)).or_default().push(job);
     }
     for ((firm, team), mut jobs) in routes {
-        let firm = by_id(&input["firms"], &Value::String(firm));
+        let firm = by_id(&input["firms"], &Value::String(firm.to_owned()));
         jobs.sort_by_key(|job| at(&job["from"]));
         for pair in jobs.windows(2) {
             let ports = [pair[0], pair[1]].map(|job| job["port"].as_str().unwrap());
@@ -167,4 +103,67 @@ pub(crate) fn faults(input: &Value, plan: &Value) -> Vec<String> {
         }
     }
     faults
+}
+
+/// The faults of one job by itself.
+fn job_faults(input: &Value, job: &Value) -> Vec<&'static str> {
+    let (from, to) = (at(&job["from"]), at(&job["to"]));
+    let call = by_id(&input["port_calls"], &job["call"]);
+    let firm = by_id(&input["firms"], &job["firm"]);
+    let (code, name) = (job["port"].as_str().unwrap(), job["team"].as_str().unwrap());
+    let day: NaiveDate = job["day"].as_str().unwrap().parse().unwrap();
+    let teams = firm["teams"].as_array();
+    let team = teams.and_then(|teams| teams.iter().find(|team| team["name"] == name));
+    let is_known = match teams {
+        Some(_) => team.is_some(),
+        None => (1..=firm["teams"].as_u64().unwrap_or(1)).contains(&name.parse().unwrap()),
+    };
+    let own = |field: &str| team.map_or(&firm[field], |team| &team[field]);
+    let hour = |field, usual| {
+        let own = own(field).as_f64().or(firm[field].as_f64());
+        own.unwrap_or(usual)
+    };
+    let agreed = input["former"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .any(|former| {
+            let is_it = former["needs"] == job["needs"] && former["from"] == job["from"];
+            is_it && former["state"] != "proposed"
+        });
+    let hours = (hour("first_hour", 8.0), hour("last_hour", 18.0));
+    let work = (local(day, hours.0, code), local(day, hours.1, code));
+    let ports = own("ports")
+        .as_array()
+        .or(firm["ports"].as_array())
+        .unwrap();
+    let asked = &by_id(&input["vessels"], &job["vessel"])["licence"];
+    let held = own("licences").as_array().or(firm["licences"].as_array());
+    let job_s = input["weights"]["job_h"].as_f64().unwrap_or(3.0) * 3600.0;
+    let checks = [
+        ("unknown team", is_known),
+        (
+            "length",
+            ((to - from).num_seconds() as f64 - job_s).abs() < 0.5,
+        ),
+        (
+            "not alongside",
+            at(&call["eta"]) <= from && to <= at(&call["etd"]),
+        ),
+        (
+            "other call",
+            call["vessel"] == job["vessel"] && call["port"] == job["port"],
+        ),
+        ("not at work", agreed || work.0 <= from && to <= work.1),
+        (
+            "not served",
+            ports.iter().any(|it| it == code || it["port"] == code),
+        ),
+        (
+            "no licence",
+            asked.is_null() || held.is_some_and(|held| held.contains(asked)),
+        ),
+    ];
+    let wrong = checks.into_iter().filter(|(_, is_right)| !is_right);
+    wrong.map(|(what, _)| what).collect()
 }

@@ -2,6 +2,8 @@
 //! and routes and, where a team does one job a day and is anywhere in time,
 //! minimum-cost flow.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 mod brute_force;
 mod flow;
 
@@ -86,7 +88,7 @@ fn problems(most_jobs: u32) -> impl Strategy<Value = Problem> {
     })
 }
 
-/// The same with one job a day of each team, which is anywhere in time.
+/// Small problems with one job a day of each team, which is anywhere in time.
 fn problems_without_watches() -> impl Strategy<Value = Problem> {
     problems(1).prop_map(|mut problem| {
         for crew in &mut problem.crews {

@@ -10,7 +10,7 @@ use super::{Answer, Leg, Routes};
 /// The most stops of a day that are searched.
 const MAX_STOPS: usize = 64;
 
-/// Where all teams are at the end of a day.
+/// The places of all teams at the end of a day.
 #[derive(Clone)]
 struct State {
     teams: Vec<Team>,

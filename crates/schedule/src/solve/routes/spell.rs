@@ -104,10 +104,10 @@ impl<'a> Spell<'a> {
     /// Returns a lower bound of the cost: each place of a day has as many teams as its jobs need
     /// by their number.
     pub(super) fn least_cost(&self) -> i64 {
-        let most = self.crew.jobs_a_team as usize;
+        let most = self.crew.jobs_a_team;
         let mut cost = 0;
         for day in &self.days {
-            let mut jobs: BTreeMap<usize, (usize, i64)> = BTreeMap::new();
+            let mut jobs: BTreeMap<usize, (u32, i64)> = BTreeMap::new();
             for stop in day.stops.iter().filter(|stop| stop.choice.is_some()) {
                 let Some(place) = stop.place else { continue };
                 let there = jobs.entry(place).or_insert((0, stop.travel));
@@ -115,7 +115,7 @@ impl<'a> Spell<'a> {
             }
             let each = jobs.values();
             cost += each
-                .map(|(jobs, travel)| jobs.div_ceil(most) as i64 * travel)
+                .map(|(jobs, travel)| i64::from(jobs.div_ceil(most)) * travel)
                 .sum::<i64>();
         }
         cost

@@ -12,15 +12,17 @@
 //! answer. The work of one relaxation is known only afterwards, and bounded by
 //! its part's size.
 
-use super::cuts::{self, Cut};
+mod cuts;
+mod model;
+
 use super::open::Open;
 use super::problem::Assignment;
-use super::relaxation::{Relaxation, Stay};
+use super::relaxation::Relaxation;
 use super::state::{Router, State};
 use super::work_limit::WorkLimit;
-use microlp::{
-    ComparisonOp, LinearExpr, OptimizationDirection, SolveOptions, TerminationReason, Variable,
-};
+use cuts::Cut;
+use microlp::{SolveOptions, TerminationReason};
+use model::{Model, Sent};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The most open choices of a part for branch and bound. The relaxation of a
@@ -43,7 +45,7 @@ pub(super) struct Outcome {
 pub(super) struct Models<'a> {
     pub(super) relaxation: &'a Relaxation<'a>,
     pub(super) router: &'a Router<'a>,
-    pub(super) cuts: BTreeSet<Cut>,
+    cuts: BTreeSet<Cut>,
 }
 
 /// A solution of a part.
@@ -78,7 +80,7 @@ impl<'a> Models<'a> {
         work: &mut WorkLimit,
     ) -> Outcome {
         let problem = self.relaxation.problem;
-        let sent = Sent::new(self, known);
+        let sent = Sent::new(self.relaxation, self.router, known);
         let mut solved: BTreeMap<(Vec<usize>, usize), Option<Solved>> = BTreeMap::new();
         let mut best: Vec<Solved> = Vec::new();
         let mut optimal = false;
@@ -108,7 +110,7 @@ impl<'a> Models<'a> {
                     let part = &key.0;
                     let nodes = (effort / part.len().max(1)).max(1) as u64;
                     let found = (part.len() <= LARGE_PART && !work.is_spent())
-                        .then(|| self.solve_part(part, &cuts, (known, &sent), nodes, work))
+                        .then(|| self.solve_part(part, &cuts, known, &sent, nodes, work))
                         .flatten();
                     solved.insert(key.clone(), found);
                 }
@@ -260,7 +262,8 @@ impl<'a> Models<'a> {
         &self,
         part: &[usize],
         cuts: &[Cut],
-        (known, sent): (&[Option<usize>], &Sent),
+        known: &[Option<usize>],
+        sent: &Sent,
         nodes: u64,
         work: &mut WorkLimit,
     ) -> Option<Solved> {
@@ -274,7 +277,7 @@ impl<'a> Models<'a> {
         let mut options = SolveOptions::default();
         options.node_limit = Some(nodes);
         options.warm_start = Some(model.warm);
-        let solved = model.model.solve_with(options).ok()?;
+        let solved = model.program.solve_with(options).ok()?;
         let pivots = usize::try_from(solved.stats().lp_iterations).unwrap_or(usize::MAX);
         work.spend(pivots.saturating_mul(PIVOT * part.len()));
         let solved = solved.into_solution().ok()?;
@@ -305,201 +308,6 @@ impl<'a> Models<'a> {
             teams,
         })
     }
-}
-
-/// The numbers of teams that the known assignment sends.
-struct Sent {
-    to_visit: Vec<u32>,
-    /// By the first visit of a stay.
-    to_stay: Vec<u32>,
-}
-
-impl Sent {
-    fn new(models: &Models<'_>, known: &[Option<usize>]) -> Sent {
-        let problem = models.relaxation.problem;
-        let mut first = vec![0; problem.visits.len()];
-        for stay in models.relaxation.stays.iter().flatten() {
-            for visit in &stay.visits {
-                first[*visit] = stay.visits[0];
-            }
-        }
-        let (mut visits, mut stays) = (BTreeSet::new(), BTreeSet::new());
-        for (at, spell) in State::new(models.router, known)
-            .spells()
-            .into_iter()
-            .enumerate()
-        {
-            let routes = models.router.routes(&spell).routes;
-            for leg in routes.into_iter().flat_map(|routes| routes.legs) {
-                let Some(choice) = leg.choice else { continue };
-                let visit = problem.choices[choice].visit;
-                visits.insert((visit, at, leg.team));
-                stays.insert((first[visit], at, leg.team));
-            }
-        }
-        let count = |teams: BTreeSet<(usize, usize, usize)>| {
-            let mut counts = vec![0; problem.visits.len()];
-            for (visit, ..) in teams {
-                counts[visit] += 1;
-            }
-            counts
-        };
-        Sent {
-            to_visit: count(visits),
-            to_stay: count(stays),
-        }
-    }
-}
-
-const CENTS: f64 = 100.0;
-
-/// A mixed-integer model of a part.
-struct Model<'a> {
-    relaxation: &'a Relaxation<'a>,
-    model: microlp::Problem,
-    warm: Vec<(Variable, f64)>,
-    /// Whether each choice is made.
-    made: BTreeMap<usize, Variable>,
-    of_visit: BTreeMap<usize, Vec<Variable>>,
-    /// Teams at each visit.
-    teams: BTreeMap<usize, Variable>,
-}
-
-impl<'a> Model<'a> {
-    fn new(relaxation: &'a Relaxation<'a>) -> Model<'a> {
-        Model {
-            relaxation,
-            model: microlp::Problem::new(OptimizationDirection::Minimize),
-            warm: Vec::new(),
-            made: BTreeMap::new(),
-            of_visit: BTreeMap::new(),
-            teams: BTreeMap::new(),
-        }
-    }
-
-    fn add_choices(&mut self, part: &[usize], known: &[Option<usize>]) {
-        let problem = self.relaxation.problem;
-        let mut of_need: BTreeMap<usize, Vec<(Variable, f64)>> = BTreeMap::new();
-        for &index in part {
-            let choice = problem.choices[index];
-            // A choice is worth its saving against leaving the need unmet.
-            let worth = (choice.cost - problem.unmet[choice.need]) as f64 / CENTS;
-            let x = self.model.add_binary_var(worth);
-            let made = known[choice.need] == Some(index);
-            self.warm.push((x, f64::from(u8::from(made))));
-            self.made.insert(index, x);
-            of_need.entry(choice.need).or_default().push((x, 1.0));
-            self.of_visit.entry(choice.visit).or_default().push(x);
-        }
-        for row in of_need.into_values() {
-            self.model.add_constraint(row, ComparisonOp::Le, 1.0);
-        }
-    }
-
-    fn add_teams(&mut self, sent: &Sent) {
-        let problem = self.relaxation.problem;
-        let mut of_day: BTreeMap<usize, LinearExpr> = BTreeMap::new();
-        let visits: Vec<usize> = self.of_visit.keys().copied().collect();
-        for visit in visits {
-            let of = problem.visits[visit];
-            let jobs = &self.of_visit[&visit];
-            let most = problem.days[of.day]
-                .teams
-                .min(jobs.len() as u32)
-                .cast_signed();
-            let y = self
-                .model
-                .add_integer_var(of.travel as f64 / CENTS, (0, most));
-            self.warm.push((y, f64::from(sent.to_visit[visit])));
-            self.teams.insert(visit, y);
-            let each = self.relaxation.jobs[visit];
-            add_capacity(&mut self.model, jobs, y, each);
-        }
-        for stay in self.relaxation.stays.iter().flatten() {
-            let here = stay
-                .visits
-                .iter()
-                .copied()
-                .filter(|visit| self.teams.contains_key(visit));
-            let here: Vec<usize> = here.collect();
-            let out = match here[..] {
-                [] => continue,
-                [only] => self.teams[&only],
-                [..] => self.add_stay(stay, &here, sent),
-            };
-            of_day
-                .entry(stay.day)
-                .or_insert_with(LinearExpr::empty)
-                .add(out, 1.0);
-        }
-        for (day, sent) in of_day {
-            let teams = f64::from(problem.days[day].teams);
-            self.model.add_constraint(sent, ComparisonOp::Le, teams);
-        }
-    }
-
-    /// Adds the teams that go to any of several places.
-    fn add_stay(&mut self, stay: &Stay, visits: &[usize], sent: &Sent) -> Variable {
-        let day = self.relaxation.problem.days[stay.day];
-        let out = self
-            .model
-            .add_integer_var(0.0, (0, day.teams.cast_signed()));
-        let first = stay.visits[0];
-        self.warm.push((out, f64::from(sent.to_stay[first])));
-        let mut jobs = Vec::new();
-        for visit in visits {
-            let there = self.teams[visit];
-            self.model
-                .add_constraint([(there, 1.0), (out, -1.0)], ComparisonOp::Le, 0.0);
-            jobs.extend(self.of_visit[visit].iter().copied());
-        }
-        let each = self.relaxation.problem.crews[day.crew].jobs_a_team as usize;
-        add_capacity(&mut self.model, &jobs, out, each);
-        out
-    }
-
-    fn add_cut(&mut self, cut: &Cut) {
-        let problem = self.relaxation.problem;
-        let mut row = LinearExpr::empty();
-        match cut {
-            Cut::AtMost { choices, most } => {
-                for choice in choices {
-                    row.add(self.made[choice], 1.0);
-                }
-                self.model
-                    .add_constraint(row, ComparisonOp::Le, *most as f64);
-            }
-            Cut::Travel { choices, least } => {
-                let least = *least as f64 / CENTS;
-                let visits = choices.iter().map(|choice| problem.choices[*choice].visit);
-                for visit in visits.collect::<BTreeSet<usize>>() {
-                    row.add(
-                        self.teams[&visit],
-                        problem.visits[visit].travel as f64 / CENTS,
-                    );
-                }
-                for choice in choices {
-                    row.add(self.made[choice], -least);
-                }
-                let all_but_one = (choices.len() - 1) as f64;
-                self.model
-                    .add_constraint(row, ComparisonOp::Ge, -least * all_but_one);
-            }
-        }
-    }
-}
-
-/// Limits jobs to a number for each team.
-fn add_capacity(model: &mut microlp::Problem, jobs: &[Variable], teams: Variable, each: usize) {
-    let mut capacity = LinearExpr::empty();
-    capacity.add(teams, -(each as f64));
-    for &x in jobs {
-        capacity.add(x, 1.0);
-        if each > 1 {
-            model.add_constraint([(x, 1.0), (teams, -1.0)], ComparisonOp::Le, 0.0);
-        }
-    }
-    model.add_constraint(capacity, ComparisonOp::Le, 0.0);
 }
 
 fn join(leader: &mut [usize], one: usize, other: usize) {

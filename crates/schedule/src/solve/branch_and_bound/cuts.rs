@@ -7,8 +7,8 @@
 //!
 //! Invariant: every assignment that the teams can do keeps every cut.
 
-use super::problem::Problem;
-use super::state::Router;
+use crate::solve::problem::Problem;
+use crate::solve::state::Router;
 use std::collections::BTreeSet;
 
 /// A constraint on some choices of a crew.
@@ -85,12 +85,9 @@ fn extend(problem: &Problem, open: &[bool], choices: &mut Vec<usize>) {
     if !is_full || !each {
         return;
     }
-    for choice in 0..problem.choices.len() {
-        if open[choice]
-            && crew_of(choice) == crew
-            && !choices.contains(&choice)
-            && apart(choice, choices)
-        {
+    let open = open.iter().enumerate().filter(|(_, is_open)| **is_open);
+    for (choice, _) in open {
+        if crew_of(choice) == crew && !choices.contains(&choice) && apart(choice, choices) {
             choices.push(choice);
         }
     }
