@@ -94,55 +94,48 @@ impl<'a> Router<'a> {
         // Dates of two zones are 26 hours apart at most, and a day has 24.
         let reach = i32::try_from(1 + (travel_s + 26 * 3600) / (24 * 3600)).unwrap_or(i32::MAX);
         let (mut first, mut last) = (date, date);
-        let here = by_date
-            .get(&date)
-            .into_iter()
-            .flatten()
-            .copied()
-            .chain(more);
-        let windows = here.map(|choice| self.problem.choices[choice].window);
-        let (mut from, mut to) = windows.fold((i64::MAX, i64::MIN), |(from, to), window| {
-            (from.min(window.from), to.max(window.to))
-        });
+        let mut own: Vec<usize> = by_date.get(&date).into_iter().flatten().copied().collect();
+        own.extend(more);
         loop {
             let near = by_date.range(first.saturating_sub(reach)..=last.saturating_add(reach));
-            let mut has_grown = false;
-            for (&other, choices) in near {
-                if (first..=last).contains(&other) {
-                    continue;
-                }
-                let windows = || {
+            let mut outside = near.filter(|(other, _)| !(first..=last).contains(*other));
+            let met = outside.find(|(other, choices)| {
+                let is_before = **other < first;
+                choices.iter().any(|choice| {
+                    own.iter().any(|own| {
+                        if is_before {
+                            self.matters(*choice, *own)
+                        } else {
+                            self.matters(*own, *choice)
+                        }
+                    })
+                })
+            });
+            let Some((&other, _)) = met else {
+                return (first, last);
+            };
+            // Days in between belong to it as well.
+            let grown = (first.min(other), last.max(other));
+            for (_, choices) in by_date.range(grown.0..=grown.1) {
+                own.extend(
                     choices
                         .iter()
-                        .map(|choice| self.problem.choices[*choice].window)
-                };
-                let begins = windows()
-                    .map(|window| window.from)
-                    .min()
-                    .unwrap_or(i64::MAX);
-                let ends = windows().map(|window| window.to).max().unwrap_or(i64::MIN);
-                let meets = if other < first {
-                    ends.saturating_add(travel_s) > from
-                } else {
-                    to.saturating_add(travel_s) > begins
-                };
-                if meets {
-                    // Days in between belong to it as well.
-                    for (_, choices) in by_date.range(other.min(first)..=other.max(last)) {
-                        for choice in choices {
-                            let window = self.problem.choices[*choice].window;
-                            (from, to) = (from.min(window.from), to.max(window.to));
-                        }
-                    }
-                    (first, last) = (first.min(other), last.max(other));
-                    has_grown = true;
-                    break;
-                }
+                        .filter(|choice| !own.contains(choice))
+                        .copied()
+                        .collect::<Vec<_>>(),
+                );
             }
-            if !has_grown {
-                return (first, last);
-            }
+            (first, last) = grown;
         }
+    }
+
+    /// Returns true if a team that makes a choice at the latest may be late for another.
+    fn matters(&self, first: usize, next: usize) -> bool {
+        let [one, other] = [first, next].map(|choice| self.problem.choices[choice]);
+        let [from, to] = [one, other].map(|choice| self.problem.visits[choice.visit]);
+        let crew = self.problem.days[from.day].crew;
+        let travel_s = self.problem.crews[crew].travel_s[from.place][to.place];
+        one.window.to + travel_s > other.window.from
     }
 }
 

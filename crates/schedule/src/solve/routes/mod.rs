@@ -2,8 +2,8 @@
 //! travel, and when.
 //!
 //! A spell is a crew's jobs on days so near each other that where a team was
-//! on one matters on the next. After a spell every team can be anywhere. So the
-//! least cost of a crew's jobs is the sum over its spells, and each is found by
+//! on one matters on the next. After a spell every team is in time for whatever
+//! is next. So the least cost of a crew's jobs is the sum over its spells, and each is found by
 //! dynamic programming over its days: a state is where each team is and when it
 //! is ready, with the least travel until then.
 //!

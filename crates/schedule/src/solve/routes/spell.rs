@@ -140,15 +140,20 @@ impl<'a> Spell<'a> {
         }
     }
 
-    /// Forgets where teams were that can be anywhere before the next day begins.
+    /// Forgets where teams were that can be anywhere in time from the next day on.
     pub(super) fn free_by(&self, teams: &mut [Team], next_day: usize) {
-        let later = self.days[next_day..].iter().flat_map(|day| &day.stops);
-        let Some(begins) = later.map(|stop| stop.window.from).min() else {
-            teams.fill(Team::FREE);
-            return;
-        };
-        for team in teams {
-            if team.ready.saturating_add(self.max_travel_s) <= begins {
+        let later = || self.days[next_day..].iter().flat_map(|day| &day.stops);
+        for team in teams.iter_mut().filter(|team| **team != Team::FREE) {
+            let is_in_time = |stop: &Stop| {
+                let travel_s = match (team.place, stop.place) {
+                    (Some(from), Some(to)) => self.crew.travel_s[from][to],
+                    // It may have to be anywhere after such hours.
+                    (Some(_), None) => self.max_travel_s,
+                    (None, _) => 0,
+                };
+                team.ready.saturating_add(travel_s) <= stop.window.from
+            };
+            if later().all(is_in_time) {
                 *team = Team::FREE;
             }
         }
