@@ -41,9 +41,9 @@ use work_limit::WorkLimit;
 pub use problem::{Assignment, Choice, Crew, CrewDay, Problem, TakenHours, Visit, Window};
 pub use timetable::{Appointment, Room, Wanted, timetable};
 
-/// The most work of a problem, in looks at a choice: fifteen seconds of a
-/// processor of 2026 for 8,000 ships.
-const MAX_WORK: u64 = 1_200_000_000;
+/// The most work of a problem, in looks at a choice: forty seconds of a
+/// processor of 2026.
+const MAX_WORK: u64 = 3_600_000_000;
 /// Price steps before each search.
 const STEPS: usize = 1000;
 /// Price steps after the last search.

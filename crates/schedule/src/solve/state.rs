@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, HashMap};
 /// The most answers that are kept.
 const MAX_KEPT: usize = 400_000;
 /// Work of a step of a route's search, in looks at a choice.
-const STEP: usize = 2;
+const STEP: usize = 5;
 
 /// The cost of some jobs' routes, if there are any, and whether it is exact.
 pub(super) type Travel = (Option<i64>, bool);
@@ -346,7 +346,7 @@ pub(super) fn greedy(
 }
 
 /// Work of a look at a choice with its spell.
-pub(super) const LOOK: usize = 20;
+pub(super) const LOOK: usize = 100;
 
 /// Takes the first of these choices for each need that a team can do.
 pub(super) fn take_first_feasible(router: &Router<'_>, choices: &[usize]) -> Assignment {

@@ -226,7 +226,7 @@ fn more_work_finds_what_little_work_does_not() {
     let problem = crowded();
     let (little, more) = (
         solve_within(&problem, 0),
-        solve_within(&problem, 60_000_000),
+        solve_within(&problem, 300_000_000),
     );
     assert!(more.cost < little.cost && more.bound > little.bound);
     assert!(

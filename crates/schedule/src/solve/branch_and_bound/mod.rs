@@ -18,7 +18,7 @@ mod model;
 use super::open::Open;
 use super::problem::Assignment;
 use super::relaxation::Relaxation;
-use super::state::{Router, State};
+use super::state::{LOOK, Router, State};
 use super::work_limit::WorkLimit;
 use cuts::Cut;
 use microlp::{SolveOptions, TerminationReason};
@@ -85,7 +85,7 @@ impl<'a> Models<'a> {
         let mut best: Vec<Solved> = Vec::new();
         let mut optimal = false;
         for _ in 0..ROUNDS {
-            work.spend(2 * problem.choices.len());
+            work.spend(2 * problem.choices.len() + LOOK * known.len());
             let mut trial = known.to_vec();
             let mut teams = sent.to_visit.clone();
             let (mut proven, mut counted, mut of_parts) = (true, 0, vec![false; known.len()]);
@@ -180,33 +180,35 @@ impl<'a> Models<'a> {
     /// Takes all parts' solutions, or each that is cheaper with the rest as it is.
     fn take_what_is_cheaper(&self, known: &[Option<usize>], parts: &[Solved]) -> Assignment {
         let cost_of = |assignment: &[Option<usize>]| State::new(self.router, assignment).cost();
-        let with = |assignment: &[Option<usize>], part: &Solved| {
-            let mut with = assignment.to_vec();
-            for (need, choice) in &part.made {
-                with[*need] = *choice;
-            }
-            with
-        };
-        let mut best = (cost_of(known), known.to_vec());
-        let all = parts
-            .iter()
-            .fold(known.to_vec(), |all, part| with(&all, part));
-        let is_cheaper = |cost: Option<i64>, than: Option<i64>| match (cost, than) {
-            (Some(cost), Some(than)) => cost < than,
-            (cost, _) => cost.is_some(),
-        };
-        let cost = cost_of(&all);
-        if cost.is_some() && !is_cheaper(best.0, cost) {
+        let is_no_dearer =
+            |assignment: &[Option<usize>]| match (cost_of(assignment), cost_of(known)) {
+                (Some(cost), Some(known)) => cost <= known,
+                (cost, _) => cost.is_some(),
+            };
+        let mut all = known.to_vec();
+        for (need, choice) in parts.iter().flat_map(|part| &part.made) {
+            all[*need] = *choice;
+        }
+        if is_no_dearer(&all) {
             return all;
         }
+        let mut state = State::new(self.router, known);
         for part in parts {
-            let with = with(&best.1, part);
-            let cost = cost_of(&with);
-            if is_cheaper(cost, best.0) {
-                best = (cost, with);
+            let mark = state.mark();
+            let saved: i64 = part.made.iter().map(|(need, _)| state.take(*need)).sum();
+            let each = part.made.iter().map(|(need, choice)| match choice {
+                Some(choice) => state.put(*need, *choice),
+                None => Some(state.problem.unmet[*need]),
+            });
+            if each.sum::<Option<i64>>().is_none_or(|cost| cost >= saved) {
+                state.undo_to(mark);
             }
+            state.settle();
         }
-        best.1
+        if is_no_dearer(&state.chosen) {
+            return state.chosen;
+        }
+        known.to_vec()
     }
 
     /// Returns the cuts whose choices are all in a part.
