@@ -1,4 +1,4 @@
-//! Scheduling of compass adjustments: the firm, place and day for each ship.
+//! Scheduling of compass adjustments: the firm, place and hour for each ship.
 //!
 //! Invariants: nothing here reads a clock or draws a random number, and the
 //! same input gives the same schedule. In reading order:

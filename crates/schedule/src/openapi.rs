@@ -6,7 +6,7 @@ use binnacle_compass::openapi::{allow_unknown_properties, schema_mut};
 use utoipa::openapi::OpenApi;
 
 /// Names of the written forms that refuse unknown fields.
-const STRICT_FORMS: [&str; 2] = ["CanalTransit", "ServedPort"];
+const STRICT_FORMS: [&str; 4] = ["CanalTransit", "FirmTeam", "ServedPort", "TravelTime"];
 
 /// Corrects the schemas of this crate's types in a document.
 ///

@@ -207,6 +207,11 @@ fn each_fault_of_teams_and_hours_is_named() {
         ),
         (
             "teams",
+            json!([{"name": "a", "working_days": []}]),
+            "firms[0].teams: \"a\" works on no day of the week",
+        ),
+        (
+            "teams",
             json!([{"name": "a", "ports": ["BEANR"]}]),
             "firms[0].teams: \"a\" works at BEANR, which is not among",
         ),
@@ -244,6 +249,30 @@ fn each_fault_of_teams_and_hours_is_named() {
     for (field, value, expected) in cases {
         let said = complaint(&format!("/firms/0/{field}"), value);
         assert!(said.starts_with(expected), "{said}\nis not\n{expected}");
+    }
+}
+
+#[test]
+fn each_fault_of_an_agreed_hour_is_named() {
+    let cases = [
+        (
+            json!({"to": "2026-12-01T09:00:00Z"}),
+            "former[0].to: 2026-12-01T09:00:00Z is the end of a job without a beginning",
+        ),
+        (
+            json!({"from": "2026-12-01T09:00:00Z", "to": "2026-12-01T09:00:00Z"}),
+            "former[0].to: 2026-12-01T09:00:00Z is not within 24 hours after 2026-12-01T09:00:00Z",
+        ),
+    ];
+    for (hours, expected) in cases {
+        let mut job = json!({
+            "needs": ["n1"], "call": "c1", "firm": "f1", "day": "2026-12-01", "state": "offered"
+        });
+        job.as_object_mut()
+            .unwrap()
+            .extend(hours.as_object().unwrap().clone());
+        let said = complaint("/former", json!([job]));
+        assert!(said.starts_with(expected), "{said}");
     }
 }
 

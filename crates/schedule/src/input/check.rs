@@ -1,6 +1,6 @@
 //! Checks the consistency of an input.
 
-use super::{Checked, Input, InputError, check_firm};
+use super::{Checked, FormerJob, Input, InputError, check_firm};
 use crate::calls::find_overlap;
 use crate::ports;
 use std::collections::{BTreeMap, BTreeSet};
@@ -114,6 +114,7 @@ pub(super) fn check(input: Input) -> Result<Checked> {
                 ));
             }
         }
+        check_hours(job).map_err(|detail| InputError::new(format!("former[{at}].to"), detail))?;
         // A call may have been cancelled since; its id must still be given.
         if job.call.is_empty() && !calls.contains("") {
             return Err(InputError::new(format!("former[{at}].call"), "is empty"));
@@ -134,6 +135,21 @@ pub(super) fn check(input: Input) -> Result<Checked> {
         )?;
     }
     Ok(Checked(input))
+}
+
+/// Checks that a job ends after its beginning, within a day.
+fn check_hours(job: &FormerJob) -> std::result::Result<(), String> {
+    let Some(to) = job.to else {
+        return Ok(());
+    };
+    let Some(from) = job.from else {
+        return Err(format!("{to} is the end of a job without a beginning"));
+    };
+    let hours = to.hours_since(from);
+    if hours > 0.0 && hours <= 24.0 {
+        return Ok(());
+    }
+    Err(format!("{to} is not within 24 hours after {from}"))
 }
 
 fn check_lengths(input: &Input) -> Result<()> {

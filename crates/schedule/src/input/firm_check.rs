@@ -109,6 +109,9 @@ fn check_teams(firm: &Firm) -> Result<(), String> {
                 "the hours of {name:?} are not in order within 0 to 24"
             ));
         }
+        if team.working_days.as_ref().is_some_and(Vec::is_empty) {
+            return Err(format!("{name:?} works on no day of the week"));
+        }
         let ports = team.ports.iter().flatten();
         if let Some(port) = { ports }.find(|port| firm.travel(**port).is_none()) {
             return Err(format!(

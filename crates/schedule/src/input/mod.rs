@@ -20,7 +20,7 @@ pub use firm::{Firm, ServedPort, Taken, TakenHours};
 pub use firm_check::{FirmError, check_firm};
 pub use read::read;
 pub use team::{Team, Teams};
-pub(crate) use travel::travel_s;
+pub(crate) use travel::{BERTH_H, travel_s};
 pub use travel::{TravelTime, usual_hours};
 pub use weights::{JOB_H, Weights};
 
@@ -170,6 +170,9 @@ pub struct FormerJob {
     /// The hour at which it was to begin; any hour of the day, if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<Instant>,
+    /// The hour at which it was to end; `job_h` after the beginning, if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<Instant>,
     /// The team, where the firm's teams have names; any, if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub team: Option<String>,

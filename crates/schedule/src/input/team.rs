@@ -1,6 +1,7 @@
 //! A firm's teams: a number of them, or each by name.
 
 use crate::ports::PortCode;
+use chrono::Weekday;
 use serde::{Deserialize, Serialize};
 
 /// The teams of a firm.
@@ -16,23 +17,33 @@ pub enum Teams {
     Named(Vec<Team>),
 }
 
-/// A team with hours, licences or ports of its own.
+/// A team with hours, days, licences or ports of its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = FirmTeam))]
 #[serde(deny_unknown_fields)]
 pub struct Team {
     /// Name, unlike those of the firm's other teams.
+    #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 100))]
     pub name: String,
-    /// Hour at which its day begins; the firm's, if absent.
+    /// Hour at which its day begins, in the port's time; the firm's, if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 24))]
     pub first_hour: Option<f64>,
     /// Hour at which its day ends; the firm's, if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 24))]
     pub last_hour: Option<f64>,
+    /// Working days of the week, as `Mon`; the firm's, if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(value_type = Option<Vec<String>>))]
+    pub working_days: Option<Vec<Weekday>>,
     /// Licences that its adjuster holds; the firm's, if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub licences: Option<Vec<String>>,
-    /// Those of the firm's ports where it works; all, if absent.
+    /// Those of the firm's ports where it works, UN/LOCODE; all, if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(value_type = Option<Vec<String>>))]
     pub ports: Option<Vec<PortCode>>,
 }
 

@@ -6,7 +6,7 @@ use binnacle_compass::position::Position;
 use serde::{Deserialize, Serialize};
 
 /// Hours between two berths of one port, with the gear: an assumption.
-const BERTH_H: f64 = 0.5;
+pub(crate) const BERTH_H: f64 = 0.5;
 /// Hours to load and unload a car with the gear: an assumption.
 const BY_ROAD_H: f64 = 0.5;
 /// Mean speed by road, km/h: an assumption.
@@ -24,13 +24,17 @@ const EARTH_KM: f64 = 6371.0;
 
 /// Hours between two ports, either way; between berths where they are one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TravelTime {
-    /// A port of the firm.
+    /// A port of the firm, UN/LOCODE.
+    #[cfg_attr(feature = "openapi", schema(value_type = String, example = "NLRTM"))]
     pub from: PortCode,
     /// Another, or the same.
+    #[cfg_attr(feature = "openapi", schema(value_type = String, example = "BEANR"))]
     pub to: PortCode,
     /// Hours from one job's end to the next one's beginning.
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 72))]
     pub hours: f64,
 }
 

@@ -31,6 +31,8 @@ pub(super) struct Candidate<'a> {
 pub(super) struct Candidates<'a> {
     pub(super) all: Vec<Candidate<'a>>,
     pub(super) problem: Problem,
+    /// Seconds of a job whose hours are not agreed yet.
+    pub(super) job_s: i64,
     pub(super) crews: &'a [Crew<'a>],
     visits: BTreeMap<(usize, PortCode, NaiveDate), usize>,
     days: BTreeMap<(usize, NaiveDate), usize>,
@@ -46,6 +48,7 @@ impl<'a> Candidates<'a> {
                 crews: crews.iter().map(Crew::numbers).collect(),
                 ..Problem::default()
             },
+            job_s: quote::job_s(input),
             crews,
             visits: BTreeMap::new(),
             days: BTreeMap::new(),
@@ -144,6 +147,7 @@ impl<'a> Candidates<'a> {
     fn add(&mut self, job: usize, call: &'a PortCall, crew: usize, day: NaiveDate, quote: Quote) {
         let of = &self.crews[crew];
         let problem = &mut self.problem;
+        problem.job_s = problem.job_s.min(quote.length_s);
         let crew_day = *self.days.entry((crew, day)).or_insert_with(|| {
             problem.days.push(CrewDay {
                 crew,
@@ -168,6 +172,7 @@ impl<'a> Candidates<'a> {
             visit,
             cost: quote.cost(),
             window: quote.window,
+            length_s: quote.length_s,
         });
         self.all.push(Candidate {
             job,

@@ -58,6 +58,7 @@ impl<'a> Capacity<'a> {
             teams: crew.teams().saturating_sub(crew.booked(day)),
             place: crew.place(port),
             window,
+            length_s: self.candidates.job_s,
         }
     }
 
@@ -103,7 +104,7 @@ impl<'a> Capacity<'a> {
                 port: candidate.call.port,
                 day: candidate.day,
                 from: quote::instant(from),
-                to: quote::instant(from + problem.job_s),
+                to: quote::instant(from + candidate.quote.length_s),
             })
         });
         let mut served: Vec<Served<'a>> = served.collect();

@@ -57,6 +57,13 @@ impl Crew<'_> {
         own.unwrap_or(self.firm.last_hour)
     }
 
+    /// Returns true on a working day.
+    pub(super) fn works(&self, day: NaiveDate) -> bool {
+        let own = self.team.and_then(|team| team.working_days.as_ref());
+        let days = own.unwrap_or(&self.firm.working_days);
+        days.contains(&day.weekday()) && !self.firm.closed.contains(&day)
+    }
+
     /// Returns the number of teams.
     pub(super) fn teams(&self) -> u32 {
         match self.team {

@@ -1,6 +1,7 @@
 //! Groups needs into jobs: needs of one ship that are due at about the same
 //! time are one job.
 
+use super::crews::seconds_up;
 use crate::calls::PortCall;
 use crate::input::{Checked, FormerJob, Input, JobState, Vessel};
 use crate::needs::{Urgency, due};
@@ -55,6 +56,12 @@ impl Job<'_> {
         let former = self.former?;
         let is_asked = former.state != JobState::Proposed;
         former.from.filter(|_| is_asked)
+    }
+
+    /// Returns the seconds for which a firm was asked, or agreed to, if they are known.
+    pub(super) fn agreed_length_s(&self) -> Option<i64> {
+        let (from, to) = (self.agreed_hour()?, self.former?.to?);
+        Some(seconds_up(to) - seconds_up(from))
     }
 
     /// Returns true if the previous plan has the job at this call, by this firm, on

@@ -28,7 +28,7 @@ pub use schedule::{
 };
 
 use crate::calls::{BerthHeading, HeadingSource};
-use crate::input::{Checked, Input, JobState};
+use crate::input::{Checked, JobState};
 use crate::solve::{self, Appointment};
 use crate::time::euros;
 use candidates::{Candidate, Candidates, travel};
@@ -50,7 +50,7 @@ pub fn plan(checked: &Checked) -> Schedule {
         .map(|choice| choice.map(|choice| &candidates.all[choice]))
         .collect();
     let hours = solve::timetable(&candidates.problem, &solved.assignment);
-    let planned = planned(input, &jobs, &candidates, &made, &hours);
+    let planned = planned(&jobs, &candidates, &made, &hours);
     // A floating-point sum of nothing is −0.
     let paid = planned
         .iter()
@@ -77,7 +77,6 @@ pub fn plan(checked: &Checked) -> Schedule {
 }
 
 fn planned(
-    input: &Input,
     jobs: &[Job<'_>],
     candidates: &Candidates<'_>,
     made: &[Option<&Candidate<'_>>],
@@ -97,7 +96,6 @@ fn planned(
         let jobs_there = shares[&(candidate.visit, appointment.team)];
         let crew = &candidates.crews[candidate.crew];
         planned_job(
-            input,
             &jobs[candidate.job],
             candidate,
             crew,
@@ -113,7 +111,6 @@ fn planned(
 }
 
 fn planned_job(
-    input: &Input,
     job: &Job<'_>,
     candidate: &Candidate<'_>,
     crew: &Crew<'_>,
@@ -134,7 +131,7 @@ fn planned_job(
         firm: firm.id.clone(),
         day: candidate.day,
         from,
-        to: quote::instant(appointment.from + quote::job_s(input)),
+        to: quote::instant(appointment.from + quote.length_s),
         team: crew.team_name(appointment.team),
         berth_heading: call.berth_heading_deg.map(|heading_deg| BerthHeading {
             heading_deg,

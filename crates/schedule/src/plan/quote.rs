@@ -35,10 +35,11 @@ pub(super) enum Obstacle {
     Declined,
 }
 
-/// The costs in cents, and the hours within which the job is done.
+/// The costs in cents, the hours within which the job is done, and its length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Quote {
     pub(super) window: Window,
+    pub(super) length_s: i64,
     pub(super) chance_of_missing: f64,
     pub(super) late_days: i64,
     pub(super) fee: i64,
@@ -76,7 +77,7 @@ pub(super) fn days(call: &PortCall, now: Instant) -> impl Iterator<Item = NaiveD
         .take_while(move |day| *day <= last)
 }
 
-/// Returns the seconds of a job.
+/// Returns the seconds of a job whose hours are not agreed yet.
 pub(super) fn job_s(input: &Input) -> i64 {
     (input.weights.job_h * 3600.0).ceil() as i64
 }
@@ -107,7 +108,9 @@ pub(super) fn quote(
     day: NaiveDate,
     agreed: Option<Instant>,
 ) -> Result<Quote, Vec<Obstacle>> {
-    let (firm, job_s) = (crew.firm, job_s(input));
+    let firm = crew.firm;
+    let agreed_s = agreed.and_then(|_| job.agreed_length_s());
+    let length_s = agreed_s.unwrap_or_else(|| job_s(input));
     let zone = port_of(call).zone;
     let weights = &input.weights;
     let today = input.now.date(zone);
@@ -120,7 +123,7 @@ pub(super) fn quote(
     let work = match agreed.map(seconds_up) {
         Some(from) => Window {
             from,
-            to: from + job_s,
+            to: from + length_s,
         },
         None => work_hours(crew, day, zone),
     };
@@ -148,11 +151,11 @@ pub(super) fn quote(
         licence.is_none_or(|asked| crew.holds(asked)),
         Obstacle::Licence,
     );
-    unless(firm.works(day), Obstacle::NotWorking);
-    let in_hours = alongside.to - alongside.from >= job_s;
+    unless(crew.works(day), Obstacle::NotWorking);
+    let in_hours = alongside.to - alongside.from >= length_s;
     unless(in_hours, Obstacle::Stay);
     unless(
-        !in_hours || window.to - window.from >= job_s,
+        !in_hours || window.to - window.from >= length_s,
         Obstacle::LeadTime,
     );
     let overdue = job.is_overdue(today);
@@ -169,7 +172,8 @@ pub(super) fn quote(
 
     let urgency = job.urgency();
     let begins = instant(work.from.max(seconds_up(ready)));
-    let chance_of_missing = call.chance_of_missing(begins, instant(work.to), weights.job_h);
+    let chance_of_missing =
+        call.chance_of_missing(begins, instant(work.to), length_s as f64 / 3600.0);
     let waits = (day - today).num_days().clamp(0, MAX_DAYS);
     let early_days = match urgency {
         Urgency::Routine | Urgency::Soon => (job.due() - day).num_days().clamp(0, MAX_DAYS),
@@ -185,6 +189,7 @@ pub(super) fn quote(
     let extra: i64 = more.map(|_| firm.extra_compass_eur.cents()).sum();
     Ok(Quote {
         window,
+        length_s,
         chance_of_missing,
         late_days,
         fee: firm.fee_eur.cents() + extra,

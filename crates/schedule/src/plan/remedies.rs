@@ -299,10 +299,11 @@ impl<'a> Remedies<'a> {
                 let from = work.from.max(ready);
                 let window = Window { from, to: work.to };
                 crew.serves(port)
+                    && crew.works(*day)
                     && work.to - from >= quote::job_s(self.input)
                     && self.capacity.missing_teams(at, port, *day, window) == 0
             };
-            firm.works(*day) && self.capacity.crews_of(firm).any(could_come)
+            self.capacity.crews_of(firm).any(could_come)
         })
     }
 

@@ -419,6 +419,7 @@ mod tests {
             visit,
             cost,
             window: Window { from: 0, to: 10 },
+            length_s: 10,
         };
         let problem = Problem {
             job_s: 10,

@@ -23,6 +23,8 @@ pub struct Choice {
     pub cost: i64,
     /// Hours within which the whole job is done.
     pub window: Window,
+    /// Seconds of the job.
+    pub length_s: i64,
 }
 
 /// A span of time, seconds since 1970.
@@ -84,7 +86,7 @@ pub struct TakenHours {
 /// crew can be where they are to be.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Problem {
-    /// Seconds of a job.
+    /// Seconds of the shortest job.
     pub job_s: i64,
     /// Cost of leaving each need unmet.
     pub unmet: Vec<i64>,
@@ -209,6 +211,7 @@ pub(super) mod test_problems {
                             visit,
                             cost,
                             window,
+                            length_s: 2 * HOUR,
                         }
                     })
                     .collect(),

@@ -45,6 +45,8 @@ pub struct Wanted {
     pub place: usize,
     /// Hours within which it is done.
     pub window: Window,
+    /// Seconds of the job.
+    pub length_s: i64,
 }
 
 /// The jobs of each crew, as a problem of its own.
@@ -68,7 +70,7 @@ impl Room {
             let visit = problem.visits[problem.choices[*choice].visit];
             let day = problem.days[visit.day];
             let (of, done) = &mut crews[day.crew];
-            add(of, day, visit, problem.choices[*choice].window);
+            add(of, day, visit, problem.choices[*choice]);
             done.push(Some(done.len()));
         }
         Room { crews }
@@ -96,7 +98,14 @@ impl Room {
             place: wanted.place,
             travel: 0,
         };
-        add(&mut problem, day, visit, wanted.window);
+        let choice = Choice {
+            need: 0,
+            visit: 0,
+            cost: 0,
+            window: wanted.window,
+            length_s: wanted.length_s,
+        };
+        add(&mut problem, day, visit, choice);
         done.push(None);
         let new = done.len() - 1;
         let router = Router::new(&problem);
@@ -104,7 +113,7 @@ impl Room {
         spell.push(new);
         let routes = routes::find(&Spell::new(&problem, 0, &spell)).routes?;
         let own = routes.legs.iter().find(|leg| leg.choice == Some(new));
-        own.map(|leg| leg.from + problem.job_s)
+        own.map(|leg| leg.from + wanted.length_s)
     }
 
     /// Returns the choices, of the assignment's problem, that are near a day of a crew: those
@@ -129,8 +138,8 @@ impl Room {
     }
 }
 
-/// Adds a need with one choice.
-fn add(problem: &mut Problem, day: CrewDay, visit: Visit, window: Window) {
+/// Adds a need with one choice, which has the hours of another.
+fn add(problem: &mut Problem, day: CrewDay, visit: Visit, choice: Choice) {
     problem.days.push(CrewDay { crew: 0, ..day });
     problem.visits.push(Visit {
         day: problem.days.len() - 1,
@@ -140,7 +149,7 @@ fn add(problem: &mut Problem, day: CrewDay, visit: Visit, window: Window) {
         need: problem.unmet.len(),
         visit: problem.visits.len() - 1,
         cost: 0,
-        window,
+        ..choice
     });
     problem.unmet.push(0);
 }

@@ -220,6 +220,29 @@ fn an_agreed_hour_holds_and_others_go_around_it() {
 }
 
 #[test]
+fn an_agreed_job_takes_as_long_as_agreed() {
+    let day = |ship| {
+        call_at(
+            "NLRTM",
+            ship,
+            "2026-12-01T00:00:00Z",
+            "2026-12-02T00:00:00Z",
+        )
+    };
+    let second = |to: &str| {
+        let former = json!([{"needs": ["n-u"], "call": "u-NLRTM", "firm": "f", "day": "2026-12-01",
+                             "from": "2026-12-01T07:00:00Z", "to": to, "state": "confirmed"}]);
+        let found = planned(&[day("u"), day("v")], &firm(), |input| {
+            input["former"] = former;
+        });
+        assert_eq!(found.jobs[0].to.to_string(), to);
+        found.jobs[1].from.to_string()
+    };
+    assert_eq!(second("2026-12-01T12:00:00Z"), "2026-12-01T12:30:00Z");
+    assert_eq!(second("2026-12-01T08:00:00Z"), "2026-12-01T08:30:00Z");
+}
+
+#[test]
 fn hours_that_are_taken_are_left_free() {
     let day = call_at("NLRTM", "u", "2026-12-01T00:00:00Z", "2026-12-02T00:00:00Z");
     let taken = |from: &str, to: &str, port: Value| {
@@ -259,6 +282,23 @@ fn a_team_with_a_name_has_its_own_hours_licence_and_ports() {
     assert_eq!(of("w").team, "Peeters");
     let late = found.jobs.iter().find(|job| job.team == "Jansen").unwrap();
     assert_eq!(late.from.to_string(), "2026-12-01T12:00:00Z");
+}
+
+#[test]
+fn a_team_works_on_its_own_days() {
+    let mut named = firm();
+    named["teams"] = json!([{"name": "Jansen", "working_days": ["Tue", "Sat"]}]);
+    let call = |eta, etd| [call_at("NLRTM", "u", eta, etd)];
+    // From Thursday to Sunday, where the firm works to Friday.
+    let weekend = call("2026-12-03T00:00:00Z", "2026-12-07T00:00:00Z");
+    let found = planned(&weekend, &named, |_| {});
+    assert_eq!(found.jobs[0].day.to_string(), "2026-12-05");
+    let monday = call("2026-11-30T00:00:00Z", "2026-11-30T20:00:00Z");
+    let found = planned(&monday, &named, |_| {});
+    assert_eq!(
+        found.unscheduled[0].because,
+        ["f does not work on Monday, 2026-11-30"]
+    );
 }
 
 #[test]

@@ -123,14 +123,12 @@ fn job_faults(input: &Value, job: &Value) -> Vec<&'static str> {
         let own = own(field).as_f64().or(firm[field].as_f64());
         own.unwrap_or(usual)
     };
-    let agreed = input["former"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .any(|former| {
-            let is_it = former["needs"] == job["needs"] && former["from"] == job["from"];
-            is_it && former["state"] != "proposed"
-        });
+    let mut former = input["former"].as_array().into_iter().flatten();
+    let agreed = former.find(|former| {
+        let is_it = former["needs"] == job["needs"] && former["from"] == job["from"];
+        is_it && former["state"] != "proposed"
+    });
+    let agreed_to = agreed.filter(|agreed| !agreed["to"].is_null());
     let hours = (hour("first_hour", 8.0), hour("last_hour", 18.0));
     let work = (local(day, hours.0, code), local(day, hours.1, code));
     let ports = own("ports")
@@ -144,7 +142,10 @@ fn job_faults(input: &Value, job: &Value) -> Vec<&'static str> {
         ("unknown team", is_known),
         (
             "length",
-            ((to - from).num_seconds() as f64 - job_s).abs() < 0.5,
+            match agreed_to {
+                Some(agreed) => to == at(&agreed["to"]),
+                None => ((to - from).num_seconds() as f64 - job_s).abs() < 0.5,
+            },
         ),
         (
             "not alongside",
@@ -154,7 +155,10 @@ fn job_faults(input: &Value, job: &Value) -> Vec<&'static str> {
             "other call",
             call["vessel"] == job["vessel"] && call["port"] == job["port"],
         ),
-        ("not at work", agreed || work.0 <= from && to <= work.1),
+        (
+            "not at work",
+            agreed.is_some() || work.0 <= from && to <= work.1,
+        ),
         (
             "not served",
             ports.iter().any(|it| it == code || it["port"] == code),

@@ -87,7 +87,7 @@ fn drive(problem: &Problem, crew: usize, left: &[Choice], teams: &mut Vec<Team>)
             });
             let begins = ready.max(job.window.from);
             let jobs = if is_out { before.jobs } else { 0 };
-            if begins + problem.job_s > job.window.to || jobs == of.jobs_a_team {
+            if begins + job.length_s > job.window.to || jobs == of.jobs_a_team {
                 continue;
             }
             let team = &mut teams[index];
@@ -95,7 +95,7 @@ fn drive(problem: &Problem, crew: usize, left: &[Choice], teams: &mut Vec<Team>)
                 team.places.clear();
             }
             let comes = team.places.insert(visit.place);
-            team.at = Some((visit.place, begins + problem.job_s));
+            team.at = Some((visit.place, begins + job.length_s));
             team.jobs = jobs + 1;
             team.dates.insert(today);
             let mut rest = left.to_vec();

@@ -83,6 +83,7 @@ fn problems(most_jobs: u32) -> impl Strategy<Value = Problem> {
                     from_h,
                     from_h + 2 + more_h,
                 ),
+                length_s: (2 + more_h % 2) * HOUR,
             })
             .collect(),
     })
@@ -141,7 +142,7 @@ proptest! {
             let choice = problem.choices[choice];
             let crew = problem.days[problem.visits[choice.visit].day].crew;
             prop_assert!(choice.window.from <= hour.from);
-            prop_assert!(hour.from + problem.job_s <= choice.window.to);
+            prop_assert!(hour.from + choice.length_s <= choice.window.to);
             prop_assert!(hour.team < problem.crews[crew].teams as usize);
         }
     }
@@ -163,6 +164,7 @@ fn crowded() -> Problem {
                     visit,
                     cost: i64::from((ship * 31 + way * 17) % 3_000),
                     window: window(date, from_h, from_h + 5),
+                    length_s: 3 * HOUR,
                 }
             })
             .collect(),
@@ -267,6 +269,7 @@ fn all_day(need: usize, visit: usize, cost: i64) -> Choice {
         visit,
         cost,
         window: window(i32::try_from(visit).unwrap(), 8, 18),
+        length_s: 3 * HOUR,
     }
 }
 

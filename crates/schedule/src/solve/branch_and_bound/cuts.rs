@@ -102,6 +102,6 @@ fn can_follow(problem: &Problem, first: usize, next: usize) -> bool {
     let crew = &problem.crews[day.crew];
     let in_order = day.date < next_day.date || day.date == next_day.date && crew.jobs_a_team > 1;
     let travel_s = crew.travel_s[from.place][to.place];
-    let ends = one.window.from + problem.job_s + travel_s + problem.job_s;
+    let ends = one.window.from + one.length_s + travel_s + other.length_s;
     one.need != other.need && in_order && ends <= other.window.to
 }

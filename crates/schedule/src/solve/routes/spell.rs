@@ -61,7 +61,7 @@ impl<'a> Spell<'a> {
             day.stops.push(Stop {
                 choice: Some(choice),
                 window: chosen.window,
-                length_s: problem.job_s,
+                length_s: chosen.length_s,
                 place: Some(visit.place),
                 travel: visit.travel,
             });
