@@ -17,6 +17,8 @@ pub mod input;
 
 pub mod plan;
 
+pub mod bookings;
+
 pub mod solve;
 
 #[cfg(feature = "openapi")]
