@@ -83,7 +83,7 @@ pub struct TakenHours {
     pub from: Instant,
     /// End.
     pub to: Instant,
-    /// The port; where the team happens to be, if absent.
+    /// The port, for one of the day's jobs; where the team happens to be and no job, if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub port: Option<PortCode>,
 }

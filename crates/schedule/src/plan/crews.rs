@@ -81,6 +81,16 @@ impl Crew<'_> {
         taken.fold(0, |sum, taken| sum.saturating_add(taken.teams))
     }
 
+    /// Returns the number of jobs of a day that are booked by the hour.
+    pub(super) fn booked_jobs(&self, day: NaiveDate) -> u32 {
+        let taken = self.firm.taken.iter().filter(|taken| {
+            let is_own = taken.team.as_ref() == self.team.map(|team| &team.name);
+            let port = taken.hours.and_then(|hours| hours.port);
+            taken.day == day && is_own && port.is_some()
+        });
+        taken.fold(0, |sum, taken| sum.saturating_add(taken.teams))
+    }
+
     /// Returns the name of a team, by its index.
     pub(super) fn team_name(&self, index: usize) -> String {
         match self.team {

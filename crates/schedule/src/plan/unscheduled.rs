@@ -187,19 +187,22 @@ impl Explanation<'_> {
             .collect();
         let jobs =
             (crew.teams().saturating_sub(crew.booked(day)) * crew.firm.jobs_a_team_day) as usize;
-        self.add_reason(if teams > 0 && today.len() >= jobs && !today.is_empty() {
-            format!("{name}'s teams of {day} go to {}", today.join(", "))
-        } else if crew.teams() == 0 {
-            format!("{name} has no teams")
-        } else if teams > 0 && jobs == 0 {
-            format!("{name}'s teams of {day} are booked")
-        } else if teams > 0 {
-            self.describe_hours(call, name, window, &others)
-        } else if excess_price >= 0 {
-            format!("{name} at {port} on {day} costs more than leaving it undone")
-        } else {
-            format!("{name} at {port} on {day} was not found within the search limit")
-        });
+        let booked = crew.booked_jobs(day) as usize;
+        self.add_reason(
+            if teams > 0 && today.len() + booked >= jobs && !today.is_empty() {
+                format!("{name}'s teams of {day} go to {}", today.join(", "))
+            } else if crew.teams() == 0 {
+                format!("{name} has no teams")
+            } else if teams > 0 && booked >= jobs {
+                format!("{name}'s teams of {day} are booked")
+            } else if teams > 0 {
+                self.describe_hours(call, name, window, &others)
+            } else if excess_price >= 0 {
+                format!("{name} at {port} on {day} costs more than leaving it undone")
+            } else {
+                format!("{name} at {port} on {day} was not found within the search limit")
+            },
+        );
         if teams > 0 {
             self.remedies
                 .add_longer_stay(call, at, day, window, excess_price);

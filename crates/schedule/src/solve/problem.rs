@@ -71,7 +71,7 @@ pub struct Crew {
     pub taken: Vec<TakenHours>,
 }
 
-/// Hours of one team that are given away.
+/// Hours of one team that are given away: one of its jobs of that day, if they have a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TakenHours {
     /// The day.

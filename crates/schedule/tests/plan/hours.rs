@@ -265,6 +265,40 @@ fn hours_that_are_taken_are_left_free() {
 }
 
 #[test]
+fn a_job_booked_elsewhere_is_one_of_the_days_jobs() {
+    let day = call_at("NLRTM", "u", "2026-12-01T00:00:00Z", "2026-12-01T20:00:00Z");
+    let with_jobs = |jobs: u32, port: Value| {
+        let hours = json!({"from": "2026-12-01T07:00:00Z", "to": "2026-12-01T08:00:00Z",
+                           "port": port});
+        planned(std::slice::from_ref(&day), &firm(), |input| {
+            input["firms"][0]["taken"] = json!([{"day": "2026-12-01", "hours": hours}]);
+            input["firms"][0]["jobs_a_team_day"] = json!(jobs);
+        })
+    };
+    let full = with_jobs(1, json!("NLRTM"));
+    assert_eq!(
+        full.unscheduled[0].because,
+        ["f's teams of 2026-12-01 are booked"]
+    );
+    assert_eq!(with_jobs(2, json!("NLRTM")).jobs.len(), 1);
+    assert_eq!(with_jobs(1, Value::Null).jobs.len(), 1);
+}
+
+#[test]
+fn more_jobs_than_a_team_may_do_are_booked_and_other_days_are_planned() {
+    let days = call_at("NLRTM", "u", "2026-12-01T00:00:00Z", "2026-12-03T00:00:00Z");
+    let found = planned(&[days], &firm(), |input| {
+        let hours = |from: &str, to: &str| json!({"day": "2026-12-01", "hours": {"from": from, "to": to, "port": "NLRTM"}});
+        input["firms"][0]["jobs_a_team_day"] = json!(1);
+        input["firms"][0]["taken"] = json!([
+            hours("2026-12-01T07:00:00Z", "2026-12-01T08:00:00Z"),
+            hours("2026-12-01T09:00:00Z", "2026-12-01T10:00:00Z"),
+        ]);
+    });
+    assert_eq!(found.jobs[0].from.to_string(), "2026-12-02T07:00:00Z");
+}
+
+#[test]
 fn a_team_with_a_name_has_its_own_hours_licence_and_ports() {
     let mut named = firm();
     named["teams"] = json!([

@@ -1,12 +1,12 @@
 //! Routes by taking the stops of each day in the order of their latest ends.
 
-use super::spell::{Spell, Team};
+use super::spell::{Load, Spell, Team};
 use super::{Leg, Routes};
 
 /// A team's day so far.
 #[derive(Clone, Default)]
 struct Today {
-    jobs: u32,
+    load: Load,
     stops: usize,
     places: Vec<usize>,
 }
@@ -26,7 +26,7 @@ pub(super) fn find(spell: &Spell<'_>) -> Option<Routes> {
             let mut seen_free = false;
             for (index, team) in teams.iter().enumerate() {
                 let own = &today[index];
-                let is_full = stop.choice.is_some() && own.jobs == spell.crew.jobs_a_team;
+                let is_full = own.load.with(stop, spell.crew.jobs_a_team).is_none();
                 let is_free = own.stops == 0 && *team == Team::FREE;
                 // Of teams that can be anywhere the first stands for all.
                 if is_full || own.stops == 0 && out == day.teams || is_free && seen_free {
@@ -46,8 +46,8 @@ pub(super) fn find(spell: &Spell<'_>) -> Option<Routes> {
             let own = &mut today[index];
             out += usize::from(own.stops == 0);
             own.stops += 1;
+            own.load = own.load.with(stop, spell.crew.jobs_a_team)?;
             if stop.choice.is_some() {
-                own.jobs += 1;
                 own.places.extend(stop.place);
             }
             routes.cost += cost;

@@ -4,7 +4,7 @@
 //! that are alike the one with the earlier first stop in the list comes first,
 //! so that no two are tried the other way round.
 
-use super::spell::{Day, Spell, Stop, Team};
+use super::spell::{Day, Load, Spell, Stop, Team};
 use super::{Answer, Leg, Routes};
 
 /// The most stops of a day that are searched.
@@ -117,7 +117,7 @@ impl Today<'_> {
         if jobs > free * self.spell.crew.jobs_a_team as usize {
             return;
         }
-        self.drive(team, out, left, 0, &mut Vec::new());
+        self.drive(team, out, left, Load::default(), &mut Vec::new());
         // A team that stays in is like the last of those alike.
         self.send_next(team, out, left);
     }
@@ -134,7 +134,7 @@ impl Today<'_> {
     }
 
     /// Gives a team one more stop, in every way.
-    fn drive(&mut self, team: usize, out: usize, left: u64, jobs: u32, places: &mut Vec<usize>) {
+    fn drive(&mut self, team: usize, out: usize, left: u64, load: Load, places: &mut Vec<usize>) {
         let alike = team > 0 && self.before[team - 1] == self.before[team];
         let after = if alike {
             Some(self.first[team - 1])
@@ -151,15 +151,16 @@ impl Today<'_> {
                 return;
             }
             let to: Stop = self.day.stops[stop];
-            let is_job = to.choice.is_some();
-            if is_job && jobs == self.spell.crew.jobs_a_team {
+            let Some(load) = load.with(&to, self.spell.crew.jobs_a_team) else {
                 continue;
-            }
+            };
             let before = self.teams[team];
             let Some(begin) = self.spell.begin(before, &to) else {
                 continue;
             };
-            let comes = to.place.filter(|place| is_job && !places.contains(place));
+            let comes = to
+                .place
+                .filter(|place| to.choice.is_some() && !places.contains(place));
             let cost = if comes.is_some() { to.travel } else { 0 };
             let first = self.first[team];
             places.extend(comes);
@@ -172,7 +173,7 @@ impl Today<'_> {
                 from: begin,
             });
             let left = left & !(1 << stop);
-            self.drive(team, out, left, jobs + u32::from(is_job), places);
+            self.drive(team, out, left, load, places);
             self.send_next(team, out + 1, left);
             self.legs.pop();
             self.first[team] = first;

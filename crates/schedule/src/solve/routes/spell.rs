@@ -29,6 +29,26 @@ pub(in crate::solve) struct Spell<'a> {
     pub(super) max_travel_s: i64,
 }
 
+/// A team's jobs of a day.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Load {
+    jobs: u32,
+    /// Those that a choice gives it.
+    chosen: u32,
+}
+
+impl Load {
+    /// Returns the load with one more stop, if a team may do so many jobs. What is booked may be
+    /// more than that; then it gets no job beside it.
+    pub(super) fn with(self, stop: &Stop, most: u32) -> Option<Load> {
+        let more = Load {
+            jobs: self.jobs + u32::from(stop.place.is_some()),
+            chosen: self.chosen + u32::from(stop.choice.is_some()),
+        };
+        (more.jobs <= most || more.chosen == 0).then_some(more)
+    }
+}
+
 /// A team's place, and when it is ready to leave it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Team {
