@@ -110,10 +110,11 @@ impl OfferParties {
     }
 }
 
-/// Returns the body of a proposal: another time, berth and fee.
+/// Returns the body of a proposal: other hours, berth and fee.
 pub fn proposal() -> Value {
     json!({
-        "terms": { "planned_at": NEXT_DAY, "berth": "A7", "fee_eur": 900.5 },
+        "terms": { "planned_at": NEXT_DAY, "planned_until": "2026-11-22T17:00:00Z", "berth": "A7",
+                   "fee_eur": 900.5 },
         "text": "Our team is at Santander until noon.",
     })
 }

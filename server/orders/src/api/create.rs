@@ -97,8 +97,8 @@ async fn open<'a>(
         compass_name,
     };
     change.append(OrderEvent::Opened(Box::new(opened))).await?;
-    let at = change.stored.summary.planned_at;
-    port_call_check::require_vessel_in_port(&mut change, at, "port").await?;
+    let hours = change.stored.summary.hours();
+    port_call_check::require_vessel_in_port(&mut change, hours, "port").await?;
     if let Some(offer) = offer {
         let offered = offer.checked(&mut change.tx, operator).await?;
         offer_requests::offer(&mut change, offered).await?;

@@ -8,6 +8,7 @@ use crate::work_orders::events::OrderEvent;
 use crate::work_orders::log::canonical_json::canonical;
 use crate::work_orders::log::entry::Entry;
 use crate::work_orders::order::NOT_A_CERTIFICATE;
+use crate::work_orders::payload::hours::local_time;
 use crate::work_orders::store::StoredOrder;
 use binnacle_adjustment::adjust::{HeelingPlan, UpdatedPrediction};
 use binnacle_adjustment::binnacle::Binnacle;
@@ -61,6 +62,11 @@ pub(crate) fn make_record(
         "port": summary.port,
         "berth": summary.berth,
         "adjusted_at": sign_off.at,
+        "adjusted_at_local": sign_off.at.and_then(|at| local_time(&summary.port, at)),
+        "agreed_hours": {
+            "from": summary.planned_at, "until": summary.planned_until,
+            "words": summary.hours().describe(&summary.port),
+        },
         "adjuster": {
             "name": sign_off.adjuster_name, "licence": sign_off.adjuster_licence, "firm": sign_off.firm,
             "signature": sign_off.signature, "account": account,

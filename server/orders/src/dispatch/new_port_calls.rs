@@ -47,7 +47,7 @@ pub async fn attach_new_calls(
             continue;
         };
         let lies_in = |call: &&NewCall| {
-            let fit = call.alongside.fit(&port, order.planned_at);
+            let fit = call.alongside.fit(&port, order.hours());
             matches!(fit, CallFit::Fits | CallFit::OtherHour)
         };
         let Some(call) = new.iter().find(lies_in) else {

@@ -178,7 +178,7 @@ async fn propose_terms(
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     let now = app.clock.now().into();
     if let Some(mut change) = update.begin_on(vessel).await? {
-        let proposal = proposal.checked(change.stored.summary.planned_at, now)?;
+        let proposal = proposal.checked(change.stored.summary.hours(), now)?;
         answer_as_firm(&mut change, firm, FirmAnswer::Propose(proposal)).await?;
         change.commit().await?;
     }

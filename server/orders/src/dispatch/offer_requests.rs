@@ -14,6 +14,7 @@ use crate::work_orders::new_order::{NewOffer, require_near_date};
 use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_update::Change;
 use crate::work_orders::payload::exchange::{Exchange, NamedFirm, Terms};
+use crate::work_orders::payload::hours::Hours;
 use crate::work_orders::state::State;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::{Error, Result};
@@ -59,7 +60,8 @@ pub(crate) struct OfferAnswer {
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OfferProposal, example = json!({
-    "terms": { "planned_at": "2026-11-22T13:00:00Z", "fee_eur": 900.0 },
+    "terms": { "planned_at": "2026-11-22T13:00:00Z", "planned_until": "2026-11-22T16:00:00Z",
+               "fee_eur": 900.0 },
     "text": "Our team is at Santander until noon."
 }))]
 pub(crate) struct Proposal {
@@ -79,6 +81,9 @@ pub(crate) struct ProposedTerms {
     /// Time of the job, if another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub planned_at: Option<Time>,
+    /// End of the job, within 24 hours; without it the job takes as long as offered.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub planned_until: Option<Time>,
     /// Berth, if another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 200)]
@@ -119,7 +124,12 @@ impl NewOffer {
                 terms.map(|terms| f64::from(terms.fee_eur))
             };
             let firm = NamedFirm { firm_id, firm_name };
-            firms.push(OfferedFirm { firm, fee_eur });
+            let team = self.teams.get(&firm_id).cloned();
+            firms.push(OfferedFirm {
+                firm,
+                fee_eur,
+                team,
+            });
         }
         Ok(OfferRound {
             firms,
@@ -168,8 +178,8 @@ impl OfferAnswer {
     }
 }
 
-/// Validates terms with a time in the future.
-pub(crate) fn checked_terms(terms: Terms, now: Time) -> Result<Terms> {
+/// Validates terms with hours in the future. Without an end the job takes as long as `before`.
+pub(crate) fn checked_terms(terms: Terms, before: Hours, now: Time) -> Result<Terms> {
     if terms.planned_at <= now {
         return Err(Error::Invalid {
             field: "planned_at",
@@ -177,7 +187,14 @@ pub(crate) fn checked_terms(terms: Terms, now: Time) -> Result<Terms> {
         });
     }
     require_near_date(terms.planned_at, now)?;
-    checked_words(terms)
+    let hours = match terms.planned_until {
+        Some(until) => Hours::new(terms.planned_at, Some(until)).checked()?,
+        None => before.moved_to(terms.planned_at),
+    };
+    checked_words(Terms {
+        planned_until: Some(hours.until),
+        ..terms
+    })
 }
 
 /// Validates berth and fee; rounds the fee to cents.
@@ -196,26 +213,33 @@ fn checked_words(mut terms: Terms) -> Result<Terms> {
 }
 
 impl Proposal {
-    /// Validates a firm's proposal for an order that is planned for this time.
+    /// Validates a firm's proposal for an order that is planned in these hours.
     ///
     /// # Errors
     /// [`Error::Invalid`] when it proposes nothing, or invalid terms.
-    pub(crate) fn checked(self, planned_at: Time, now: Time) -> Result<CheckedProposal> {
+    pub(crate) fn checked(self, planned: Hours, now: Time) -> Result<CheckedProposal> {
         let new = self.terms;
+        let has_hours = new.planned_at.is_some() || new.planned_until.is_some();
         let terms = Terms {
-            planned_at: new.planned_at.unwrap_or(planned_at),
+            planned_at: new.planned_at.unwrap_or(planned.from),
+            planned_until: new.planned_until,
             berth: new.berth,
             fee_eur: new.fee_eur,
         };
-        // An unchanged time is not checked again: the firm may still accept it.
-        let terms = match new.planned_at {
-            Some(_) => checked_terms(terms, now)?,
-            None => checked_words(terms)?,
+        // Unchanged hours are not checked again: the firm may still accept them.
+        let terms = if has_hours {
+            checked_terms(terms, planned, now)?
+        } else {
+            checked_words(Terms {
+                planned_until: Some(planned.until),
+                ..terms
+            })?
         };
-        if new.planned_at.is_none() && terms.berth.is_none() && terms.fee_eur.is_none() {
+        if !has_hours && terms.berth.is_none() && terms.fee_eur.is_none() {
             return Err(Error::Invalid {
                 field: "terms",
-                detail: "propose nothing: give planned_at, berth or fee_eur".to_owned(),
+                detail: "propose nothing: give planned_at, planned_until, berth or fee_eur"
+                    .to_owned(),
             });
         }
         Ok(CheckedProposal {
@@ -270,42 +294,53 @@ pub(crate) fn checked_message(message: &str) -> Result<String> {
 /// # Errors
 /// [`Error::WrongState`] when its time is past, or a firm has no team left or does not work on
 /// that day.
-pub(crate) async fn offer(change: &mut Change<'_>, offered: OfferRound) -> Result<()> {
-    let at = change.stored.summary.planned_at;
-    require_future_job(change, at)?;
+pub(crate) async fn offer(change: &mut Change<'_>, mut offered: OfferRound) -> Result<()> {
+    let hours = change.stored.summary.hours();
+    require_future_job(change, hours.from)?;
     // All transactions lock firms in the same order.
-    let mut firms: Vec<&NamedFirm> = offered.firms.iter().map(|one| &one.firm).collect();
-    firms.sort_by_key(|firm| firm.firm_id.0);
-    for firm in firms {
-        require_capacity(change, firm, at, Requester::Operator).await?;
+    let mut firms: Vec<&mut OfferedFirm> = offered.firms.iter_mut().collect();
+    firms.sort_by_key(|one| one.firm.firm_id.0);
+    for one in firms {
+        let job = TeamJob {
+            firm: &one.firm,
+            team: one.team.as_deref(),
+            hours,
+        };
+        one.team = require_capacity(change, &job, Requester::Operator).await?;
     }
     change.append(OrderEvent::OfferRound(offered)).await?;
     // The first firm named receives the offer however short the notice.
     send_offers(change).await
 }
 
-/// Refuses a time at which a firm has no team left.
+/// Job that a firm is to do.
+pub(crate) struct TeamJob<'a> {
+    /// The firm.
+    pub firm: &'a NamedFirm,
+    /// Team that is expected, if it has a name.
+    pub team: Option<&'a str>,
+    /// Hours of the job.
+    pub hours: Hours,
+}
+
+/// Refuses hours for which a firm has no team left. Returns the team, if it has a name.
 pub(crate) async fn require_capacity(
     change: &mut Change<'_>,
-    firm: &NamedFirm,
-    at: Time,
+    job: &TeamJob<'_>,
     requester: Requester,
-) -> Result<()> {
+) -> Result<Option<String>> {
     let summary = &change.stored.summary;
     let visit = Visit {
         operator: summary.operator_id,
         vessel: summary.vessel_id,
+        order: summary.id,
         port: &summary.port,
-        at,
+        from: job.hours.from,
+        until: job.hours.until,
+        team: job.team,
     };
-    firms::require_capacity(
-        &mut change.tx,
-        firm.firm_id,
-        &firm.firm_name,
-        &visit,
-        requester,
-    )
-    .await
+    let (firm, name) = (job.firm.firm_id, &job.firm.firm_name);
+    firms::require_capacity(&mut change.tx, firm, name, &visit, requester).await
 }
 
 /// Answer of a firm to an offer.
@@ -343,14 +378,20 @@ pub(crate) async fn answer_as_firm(
         return wrong(OfferState::Lapsed.reason_closed());
     }
     let named_firm = offer.firm();
+    let job = |hours| TeamJob {
+        firm: &named_firm,
+        team: offer.team.as_deref(),
+        hours,
+    };
     match answer {
         FirmAnswer::Accept(answer) => {
-            let at = change.stored.summary.planned_at;
-            require_future_job(change, at)?;
-            require_capacity(change, &named_firm, at, Requester::Firm).await?;
+            let hours = change.stored.summary.hours();
+            require_future_job(change, hours.from)?;
+            let team = require_capacity(change, &job(hours), Requester::Firm).await?;
             let taken = Exchange {
                 fee_eur: offer.fee_eur,
-                ..answer.into_exchange(named_firm)
+                team,
+                ..answer.into_exchange(named_firm.clone())
             };
             change.append(OrderEvent::Accepted(Accepted(taken))).await
         }
@@ -363,17 +404,18 @@ pub(crate) async fn answer_as_firm(
             send_next_offers(change).await
         }
         FirmAnswer::Propose(proposal) => {
-            let at = proposal.terms.planned_at;
-            require_capacity(change, &named_firm, at, Requester::Firm).await?;
-            if at != change.stored.summary.planned_at {
-                port_call_check::require_vessel_in_port(change, at, "planned_at").await?;
+            let hours = proposal.terms.hours();
+            let team = require_capacity(change, &job(hours), Requester::Firm).await?;
+            if hours != change.stored.summary.hours() {
+                port_call_check::require_vessel_in_port(change, hours, "planned_at").await?;
             }
-            let until = answer_by(change, offers.answer_within_hours, at);
+            let until = answer_by(change, offers.answer_within_hours, hours.from);
             let share = share_deadline(change, &offers, 0).await?;
             let until = share.map_or(until, |share| share.min(until));
             let proposed = Exchange {
                 answer_by: Some(until),
                 terms: Some(proposal.terms),
+                team,
                 text: proposal.text,
                 ..Exchange::with(named_firm)
             };
@@ -428,12 +470,17 @@ pub(crate) async fn answer_as_operator(
         if let Some(terms) = &mut exchange.terms {
             // Terms that the firm omits stay as offered.
             terms.fee_eur = fee_eur;
-            let at = terms.planned_at;
-            require_future_job(change, at)?;
-            require_capacity(change, &firm, at, Requester::Operator).await?;
-            if at != change.stored.summary.planned_at {
-                port_call_check::require_vessel_in_port(change, at, "planned_at").await?;
-                link_call_at(change, at).await?;
+            let hours = terms.hours();
+            require_future_job(change, hours.from)?;
+            let job = TeamJob {
+                firm: &firm,
+                team: offer.team.as_deref(),
+                hours,
+            };
+            exchange.team = require_capacity(change, &job, Requester::Operator).await?;
+            if hours != change.stored.summary.hours() {
+                port_call_check::require_vessel_in_port(change, hours, "planned_at").await?;
+                link_call_at(change, hours.from).await?;
             }
         }
         return change

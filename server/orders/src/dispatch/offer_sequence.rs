@@ -126,6 +126,7 @@ pub(crate) async fn send_offers(change: &mut Change<'_>) -> Result<()> {
         let sent = Exchange {
             answer_by: Some(answer_by),
             fee_eur: next.fee_eur,
+            team: next.team.clone(),
             text: next.text.clone(),
             ..Exchange::with(next.firm())
         };

@@ -7,6 +7,7 @@ use crate::dispatch::call_links;
 use crate::work_orders::events::{CallMoved, OrderEvent};
 use crate::work_orders::log::entry::Author;
 use crate::work_orders::offers::Offer;
+use crate::work_orders::payload::hours::Hours;
 use crate::work_orders::payload::port_call::{Alongside, CallChange, CallFit};
 use crate::work_orders::publish::OrderBefore;
 use crate::work_orders::{publish, store};
@@ -33,10 +34,18 @@ pub struct CallUpdate {
 #[derive(sqlx::FromRow)]
 pub(crate) struct AffectedOrder {
     pub(crate) id: OrderId,
-    pub(crate) planned_at: Time,
+    planned_at: Time,
+    planned_until: Time,
     call_id: Option<CallId>,
     /// True without a link to a valid call.
     pub(crate) is_unlinked: bool,
+}
+
+impl AffectedOrder {
+    /// Hours of the job.
+    pub(crate) fn hours(&self) -> Hours {
+        Hours::new(self.planned_at, Some(self.planned_until))
+    }
 }
 
 /// Announces changes of calls of one vessel, whose row is locked. Returns the live events, to be
@@ -82,7 +91,7 @@ pub(crate) async fn under_way(tx: &mut Tx, vessel: VesselId) -> Result<Vec<Affec
     Ok(rows!(
         in &mut *tx,
         AffectedOrder,
-        "SELECT o.id, o.planned_at, l.call_id,
+        "SELECT o.id, o.planned_at, o.planned_until, l.call_id,
                 CASE WHEN c.id IS NULL OR c.withdrawn_at IS NOT NULL THEN TRUE ELSE FALSE END
                     AS is_unlinked
          FROM work_orders o
@@ -108,11 +117,11 @@ pub(crate) async fn announce_update(
     let before = OrderBefore::from_order(&stored);
     // The order's port is that of its first known call.
     let port = state.port.as_ref().unwrap_or(&update.was.port);
-    let planned_at = stored.summary.planned_at;
+    let hours = stored.summary.hours();
     let fit = update
         .is
         .as_ref()
-        .map_or(CallFit::NoCall, |is| is.fit(port, planned_at));
+        .map_or(CallFit::NoCall, |is| is.fit(port, hours));
     let call = CallChange {
         call_id: update.then_id,
         was: update.was.clone(),
@@ -122,7 +131,7 @@ pub(crate) async fn announce_update(
     };
     let seen = |offer: &&Offer| offer.state.is_seen();
     for offer in state.offers.all.iter().filter(seen) {
-        let moved = CallMoved::new(offer.firm(), call.clone(), planned_at);
+        let moved = CallMoved::new(offer.firm(), call.clone(), hours);
         let moved = OrderEvent::CallMoved(Box::new(moved));
         store::append(
             tx,

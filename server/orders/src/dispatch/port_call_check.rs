@@ -5,6 +5,7 @@
 
 use crate::firms::named_port;
 use crate::work_orders::order_update::Change;
+use crate::work_orders::payload::hours::Hours;
 use crate::work_orders::payload::port_call::{Alongside, CallFit};
 use binnacle_platform::db::{Tx, rows};
 use binnacle_platform::error::{Error, Result};
@@ -55,9 +56,10 @@ async fn coming_calls(
 /// [`Error::Invalid`], for a field.
 pub(crate) async fn require_vessel_in_port(
     change: &mut Change<'_>,
-    at: Time,
+    hours: Hours,
     field: &'static str,
 ) -> Result<()> {
+    let at = hours.from;
     let (vessel, port) = (change.stored.summary.vessel_id, &change.stored.summary.port);
     let Some(named) = named_port(port) else {
         return Ok(());
@@ -68,7 +70,7 @@ pub(crate) async fn require_vessel_in_port(
         .filter_map(|(code,)| named_port(code))
         .collect();
     let Some(other) = there.first() else {
-        return require_port_call(change, named, at, field).await;
+        return require_port_call(change, named, hours, field).await;
     };
     if there.iter().any(|port| port.code == named.code) {
         return Ok(());
@@ -83,14 +85,14 @@ pub(crate) async fn require_vessel_in_port(
 async fn require_port_call(
     change: &mut Change<'_>,
     named: &Port,
-    at: Time,
+    hours: Hours,
     field: &'static str,
 ) -> Result<()> {
     let vessel = change.stored.summary.vessel_id;
     let calls = coming_calls(&mut change.tx, vessel, named.code, change.now).await?;
     let port = named.code.to_string();
     let is_that_day =
-        |call: &Alongside| matches!(call.fit(&port, at), CallFit::Fits | CallFit::OtherHour);
+        |call: &Alongside| matches!(call.fit(&port, hours), CallFit::Fits | CallFit::OtherHour);
     if calls.is_empty() || calls.iter().any(is_that_day) {
         return Ok(());
     }
@@ -100,7 +102,7 @@ async fn require_port_call(
             in a call, or enter the missing call",
         named.name,
         there.join(", "),
-        at.to_the_minute()
+        hours.from.to_the_minute()
     );
     Err(Error::Invalid { field, detail })
 }

@@ -2,11 +2,11 @@
 //! declines.
 //!
 //! Invariants: the agreed time stands until the firm accepts. The new time lies in a call of the
-//! vessel at the order's port, long enough for a job, and on a day on which the firm has a team
-//! left. Both are checked at the proposal and at the acceptance.
+//! vessel at the order's port, as long as the job, and one of the firm's teams has these hours.
+//! Both are checked at the proposal and at the acceptance.
 
 use crate::dispatch::offer_requests::{
-    MAX_ANSWER_HOURS, OfferAnswer, checked_terms, require_capacity,
+    MAX_ANSWER_HOURS, OfferAnswer, TeamJob, checked_terms, require_capacity,
 };
 use crate::dispatch::offer_sequence::answer_by;
 use crate::dispatch::{call_links, port_call_check};
@@ -16,7 +16,8 @@ use crate::work_orders::new_order::default_answer_hours;
 use crate::work_orders::offers::Offer;
 use crate::work_orders::order::Order;
 use crate::work_orders::order_update::Change;
-use crate::work_orders::payload::exchange::{Exchange, NamedFirm, Terms};
+use crate::work_orders::payload::exchange::{Exchange, Terms};
+use crate::work_orders::payload::hours::Hours;
 use crate::work_orders::payload::port_call::CallFit;
 use crate::work_orders::state::State;
 use crate::work_orders::{load_order, prepare_update, store};
@@ -49,7 +50,8 @@ where
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NewRetime, example = json!({
-    "terms": { "planned_at": "2026-12-10T08:00:00Z" }, "answer_within_hours": 24,
+    "terms": { "planned_at": "2026-12-10T08:00:00Z", "planned_until": "2026-12-10T11:00:00Z" },
+    "answer_within_hours": 24,
     "text": "She is two days late."
 }))]
 struct RetimeRequest {
@@ -96,7 +98,8 @@ async fn propose_retime(
             detail: format!("{hours} is outside 1 to {MAX_ANSWER_HOURS}"),
         });
     }
-    let terms = checked_terms(retime.terms, app.clock.now().into())?;
+    let before = stored.summary.hours();
+    let terms = checked_terms(retime.terms, before, app.clock.now().into())?;
     let text = optional_text("text", retime.text.as_deref())?;
     stored.require_state(
         &[State::Accepted],
@@ -105,7 +108,8 @@ async fn propose_retime(
     )?;
     if let Some(mut change) = update.begin(&stored).await? {
         let holder = holder(&change)?;
-        require_possible_time(&mut change, &holder.firm(), &terms, Requester::Operator).await?;
+        let requester = Requester::Operator;
+        require_possible_time(&mut change, &holder, terms.hours(), requester).await?;
         let between = Exchange {
             answer_by: Some(answer_by(&change, hours, terms.planned_at)),
             terms: Some(terms),
@@ -167,10 +171,12 @@ async fn accept_retime(
             fee_eur: terms.fee_eur.or_else(|| offer.fee()),
             ..terms
         };
-        require_possible_time(&mut change, &offer.firm(), &terms, Requester::Firm).await?;
+        let team =
+            require_possible_time(&mut change, &offer, terms.hours(), Requester::Firm).await?;
         call_links::link_call_at(&mut change, terms.planned_at).await?;
         let agreed = Exchange {
             terms: Some(terms),
+            team,
             text: answer.text,
             ..Exchange::with(offer.firm())
         };
@@ -280,32 +286,40 @@ async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
     Ok(call.map(|call| call.port).filter(is_orders_port))
 }
 
-/// Refuses a time at which the vessel is not there, or the firm has no team.
+/// Refuses hours in which the vessel is not there, or the firm has no team. Returns the team, if it
+/// has a name.
 ///
 /// # Errors
 /// [`Error::WrongState`], with the reason.
 async fn require_possible_time(
     change: &mut Change<'_>,
-    firm: &NamedFirm,
-    terms: &Terms,
+    offer: &Offer,
+    hours: Hours,
     requester: Requester,
-) -> Result<()> {
+) -> Result<Option<String>> {
+    let firm = offer.firm();
+    let job = TeamJob {
+        firm: &firm,
+        team: offer.team.as_deref(),
+        hours,
+    };
     // Without any known call the firm judges for itself.
     let Some(port) = order_port(change).await? else {
-        port_call_check::require_vessel_in_port(change, terms.planned_at, "planned_at").await?;
-        return require_capacity(change, firm, terms.planned_at, requester).await;
+        port_call_check::require_vessel_in_port(change, hours, "planned_at").await?;
+        return require_capacity(change, &job, requester).await;
     };
-    let (at, vessel) = (terms.planned_at, change.stored.summary.vessel_id);
-    let call = call_links::call_at(&mut change.tx, vessel, at).await?;
+    let vessel = change.stored.summary.vessel_id;
+    let call = call_links::call_at(&mut change.tx, vessel, hours.from).await?;
     let fit = match &call {
-        Some(call) => call.alongside()?.fit(&port, at),
+        Some(call) => call.alongside()?.fit(&port, hours),
         None => CallFit::NoCall,
     };
     if fit != CallFit::Fits {
         return Err(Error::WrongState(format!(
-            "the vessel has no call at {port} that lasts three hours from {}",
-            at.to_the_minute()
+            "the vessel has no call at {port} that lasts from {} to {}",
+            hours.from.to_the_minute(),
+            hours.until.to_the_minute()
         )));
     }
-    require_capacity(change, firm, at, requester).await
+    require_capacity(change, &job, requester).await
 }

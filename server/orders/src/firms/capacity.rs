@@ -1,54 +1,32 @@
-//! Capacity of a firm: the vessels it visits on a day, by orders of all operators, and its teams.
+//! Capacity of a firm: whether one of its teams has the hours for a visit, beside its orders of all
+//! operators.
 //!
-//! Invariants: a booking holds the firm's lock until the transaction ends, so that the last team
-//! is booked once. A team is in one port a day. An operator learns of others' orders only that no
-//! team is left; the firm sees its own. An operator offers no job at a time at which the firm does
-//! not work by the operator's terms. A firm without terms accepts any time.
+//! Invariants: a booking holds the firm's lock until the transaction ends, so that a team's hours
+//! are booked once. A team is in one place at a time and has the time to travel between. An
+//! operator learns of others' orders only that no team is left; the firm sees its own. An operator
+//! offers no job at hours at which no suitable team works, by its terms and the firm's statement.
+//! A firm without terms and teams accepts any hours.
 
+use super::engaged::{JobHours, Unsuitable, suitable_teams};
+use super::port_names::{day, zone};
 use super::store;
+use super::taken::{StoredBooking, Visit, list_around, visits};
+use super::teams::{self, StatedTeams};
 use super::terms::Terms;
 use binnacle_fleet::particulars;
-use binnacle_platform::db::{Db, Tx, execute, rows};
+use binnacle_platform::db::{Tx, execute};
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::ids::{FirmId, OperatorId, OrderId, VesselId};
+use binnacle_platform::ids::{FirmId, OperatorId};
 use binnacle_platform::time::Time;
-use binnacle_schedule::ports::{self, Port, PortCode};
+use binnacle_schedule::bookings::{Booking, assign_teams};
+use binnacle_schedule::input::{Firm, Teams};
 use binnacle_schedule::time::Instant;
-use binnacle_schedule::zone::Zone;
-use chrono::NaiveDate;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-/// Largest distance of a port's day from any of its instants, hours, in whatever zone.
-const MAX_DAY_OFFSET_H: f64 = 40.0;
-
-/// Order that a firm has been offered, or has.
-#[derive(Clone, Debug, sqlx::FromRow)]
-pub struct Booking {
-    /// Operator of the vessel.
-    pub operator_id: OperatorId,
-    /// The vessel.
-    pub vessel_id: VesselId,
-    /// Its name.
-    pub vessel_name: String,
-    /// The order.
-    pub order_id: OrderId,
-    port: String,
-    planned_at: Time,
-    /// True if the firm has it, false if it has an offer only.
-    pub is_taken: bool,
-}
-
-/// Visit of a firm to a vessel.
-pub struct Visit<'a> {
-    /// Operator of the order.
-    pub operator: OperatorId,
-    /// Vessel to visit.
-    pub vessel: VesselId,
-    /// Port, as the order names it.
-    pub port: &'a str,
-    /// Time of the visit.
-    pub at: Time,
-}
+/// Time around a visit in which other orders may keep a team from it, hours: the longest way.
+const AROUND_H: f64 = 72.0;
+/// Most jobs of a team on a day where no terms say: as in terms.
+const MAX_JOBS_A_TEAM_DAY: u32 = 20;
 
 /// Party that books a visit.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -59,123 +37,73 @@ pub enum Requester {
     Firm,
 }
 
-/// Port that an order names: by its code, alone or behind its name, or by its name.
-pub fn named_port(words: &str) -> Option<&'static Port> {
-    let code = words
-        .rsplit_once('(')
-        .and_then(|(_, code)| code.strip_suffix(')'));
-    let by_code = |text: &str| PortCode::parse(text).ok().and_then(ports::find);
-    let named = |port: &&Port| {
-        let words = words.trim();
-        port.name.eq_ignore_ascii_case(words) || port.plain_name.eq_ignore_ascii_case(words)
-    };
-    code.and_then(by_code)
-        .or_else(|| by_code(words))
-        .or_else(|| {
-            // A name shared by several ports is ambiguous.
-            let mut all = ports::all().iter().filter(named);
-            all.next().filter(|_| all.next().is_none())
+/// Terms and teams by which a firm's capacity is judged.
+struct Capacity {
+    own: Option<Firm>,
+    all: Firm,
+    is_stated: bool,
+}
+
+impl Capacity {
+    /// Combines all operators' terms; `None` where neither terms nor teams are known.
+    fn new(
+        all_terms: &[(OperatorId, Terms)],
+        operator: OperatorId,
+        stated: &StatedTeams,
+    ) -> Option<Capacity> {
+        let is_stated = !stated.teams.is_empty();
+        if all_terms.is_empty() && !is_stated {
+            return None;
+        }
+        let own = all_terms.iter().find(|(whose, _)| *whose == operator);
+        let own = own.map(|(_, terms)| teams::join(terms.firm("", None), stated));
+        // Each operator records the teams that work for it: the largest number counts as all.
+        let most =
+            |figure: fn(&Terms) -> u32| all_terms.iter().map(|(_, terms)| figure(terms)).max();
+        let mut all = Terms::usual(Vec::new()).firm("", None);
+        all.teams = most(|terms| terms.teams).unwrap_or(0).into();
+        all.jobs_a_team_day = most(|terms| terms.jobs_a_team_day).unwrap_or(MAX_JOBS_A_TEAM_DAY);
+        all.ports = all_terms
+            .iter()
+            .flat_map(|(_, terms)| terms.ports.clone())
+            .collect();
+        all.ports.sort_by_key(|served| served.port);
+        all.ports.dedup_by_key(|served| served.port);
+        let mut all = teams::join(all, stated);
+        if is_stated {
+            all.teams = Teams::Named(stated.teams.clone());
+        }
+        Some(Capacity {
+            own,
+            all,
+            is_stated,
         })
-}
+    }
 
-/// Key of a port, however its name is written.
-fn place(words: &str) -> String {
-    named_port(words).map_or_else(|| words.trim().to_lowercase(), |port| port.code.to_string())
-}
-
-/// Day of an instant in a port's time.
-fn day(words: &str, at: Time) -> NaiveDate {
-    Instant(at.0).date(named_port(words).map_or_else(Zone::utc, |port| port.zone))
-}
-
-impl Booking {
-    /// Day in the port's time.
-    pub fn day(&self) -> NaiveDate {
-        day(&self.port, self.planned_at)
+    /// Returns whether teams can do all of these visits.
+    fn can_do(&self, orders: &[&StoredBooking], own: OperatorId) -> bool {
+        let bookings = |firm: &Firm, orders: &[&StoredBooking]| -> Vec<Booking> {
+            let visits = visits(firm, orders.iter().copied());
+            visits.into_iter().map(|visit| visit.booking).collect()
+        };
+        if assign_teams(&self.all, &bookings(&self.all, orders)).is_none() {
+            return false;
+        }
+        let Some(firm) = self.own.as_ref().filter(|_| !self.is_stated) else {
+            return true;
+        };
+        // An operator may have fewer teams of the firm than there are.
+        let of_own: Vec<&StoredBooking> = orders
+            .iter()
+            .copied()
+            .filter(|order| order.operator_id == own)
+            .collect();
+        assign_teams(firm, &bookings(firm, &of_own)).is_some()
     }
 }
 
-/// Number of teams for these vessels on one day.
-fn teams(at: impl IntoIterator<Item = (String, VesselId)>, jobs_a_team: u32) -> u32 {
-    let mut there: BTreeMap<String, BTreeSet<VesselId>> = BTreeMap::new();
-    for (place, vessel) in at {
-        there.entry(place).or_default().insert(vessel);
-    }
-    let ships = there.values().map(|ships| u32::try_from(ships.len()));
-    ships
-        .map(|ships| ships.unwrap_or(u32::MAX).div_ceil(jobs_a_team.max(1)))
-        .fold(0, u32::saturating_add)
-}
-
-/// Teams booked by orders outside a plan, day by day.
-pub fn teams_taken<'a>(
-    bookings: impl IntoIterator<Item = &'a Booking>,
-    jobs_a_team: u32,
-) -> BTreeMap<NaiveDate, u32> {
-    let mut days: BTreeMap<NaiveDate, Vec<(String, VesselId)>> = BTreeMap::new();
-    for booking in bookings {
-        let there = (place(&booking.port), booking.vessel_id);
-        days.entry(booking.day()).or_default().push(there);
-    }
-    let taken = days.into_iter();
-    taken
-        .map(|(day, there)| (day, teams(there, jobs_a_team)))
-        .collect()
-}
-
-macro_rules! bookings_sql {
-    ($where:literal) => {
-        concat!(
-            "SELECT v.operator_id, o.vessel_id, v.name AS vessel_name, o.id AS order_id,
-                    COALESCE(c.port, o.port) AS port, o.planned_at,
-                    CASE WHEN f.state = 'accepted' THEN TRUE ELSE FALSE END AS is_taken
-             FROM work_order_offers f
-             JOIN work_orders o ON o.vessel_id = f.vessel_id AND o.id = f.order_id
-             JOIN vessels v ON v.id = o.vessel_id
-             LEFT JOIN schedule_orders l ON l.vessel_id = o.vessel_id AND l.order_id = o.id
-             LEFT JOIN port_calls c ON c.vessel_id = l.vessel_id AND c.id = l.call_id
-             WHERE f.firm_id = $1 AND f.state IN ('open', 'proposed', 'accepted')
-               AND o.state <> 'cancelled' ",
-            $where,
-            " ORDER BY o.planned_at, o.vessel_id, o.id"
-        )
-    };
-}
-
-/// Lists a firm's offers and orders from a time on.
-pub async fn bookings(db: &Db, firm: FirmId, from: Time) -> Result<Vec<Booking>> {
-    Ok(rows!(
-        db,
-        Booking,
-        bookings_sql!("AND o.planned_at >= $2"),
-        firm,
-        from
-    )?)
-}
-
-/// Refuses a visit while a firm is closed, or to a vessel that it may not adjust.
-async fn require_suitable_firm(
-    tx: &mut Tx,
-    firm_name: &str,
-    terms: &Terms,
-    visit: &Visit<'_>,
-) -> Result<()> {
-    let wrong = |why: String, instead: &str| {
-        Err(Error::WrongState(format!(
-            "by your terms, {firm_name} {why}: choose another {instead}, or change the terms"
-        )))
-    };
-    if let Some(why) = terms.closed_at(visit.at, named_port(visit.port)) {
-        return wrong(why, "time");
-    }
-    let (flag, licence) = particulars::adjuster_requirements(tx, visit.vessel).await?;
-    match terms.not_accepted(flag, licence.as_deref()) {
-        Some(why) => wrong(why, "firm"),
-        None => Ok(()),
-    }
-}
-
-/// Refuses a visit for which a firm has no team left, or which its terms exclude.
+/// Refuses a visit for which no team of a firm has the hours, or which its terms exclude. Returns
+/// the team that does it, where the firm's teams have names.
 ///
 /// # Errors
 /// [`Error::WrongState`], in words for the requester.
@@ -185,7 +113,7 @@ pub async fn require_capacity(
     firm_name: &str,
     visit: &Visit<'_>,
     requester: Requester,
-) -> Result<()> {
+) -> Result<Option<String>> {
     // Other bookings of the firm wait.
     execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
     let all_terms = store::list_terms(tx, firm).await?;
@@ -193,65 +121,120 @@ pub async fn require_capacity(
         .into_iter()
         .map(|(operator, text)| Ok((operator, serde_json::from_str(&text)?)))
         .collect::<Result<_>>()?;
-    if all_terms.is_empty() {
-        return Ok(());
-    }
-    let (from, to) = (
-        Time(visit.at.0.plus_seconds(-MAX_DAY_OFFSET_H * 3600.0)),
-        Time(visit.at.0.plus_seconds(MAX_DAY_OFFSET_H * 3600.0)),
-    );
-    let around = rows!(
-        in tx,
-        Booking,
-        bookings_sql!("AND o.planned_at >= $2 AND o.planned_at <= $3 AND o.vessel_id <> $4"),
-        firm,
-        from,
-        to,
-        visit.vessel
-    )?;
-    let own = all_terms
-        .iter()
-        .find(|(operator, _)| *operator == visit.operator);
-    // Times and vessels are the operator's own record of the firm: they do not bind the firm
-    // itself.
-    if requester == Requester::Operator
-        && let Some((_, terms)) = own
-    {
-        require_suitable_firm(tx, firm_name, terms, visit).await?;
-    }
-    let that_day = day(visit.port, visit.at);
-    let there = (place(visit.port), visit.vessel);
-    let others: Vec<&Booking> = around.iter().filter(|one| one.day() == that_day).collect();
-    let counts = |one: &Booking| {
+    let stated = teams::find_stated(tx, firm).await?;
+    let Some(capacity) = Capacity::new(&all_terms, visit.operator, &stated) else {
+        return Ok(None);
+    };
+    let candidates = candidates(tx, firm_name, &capacity, visit, requester).await?;
+    let between = [
+        Time(visit.from.0.plus_seconds(-AROUND_H * 3600.0)),
+        Time(visit.until.0.plus_seconds(AROUND_H * 3600.0)),
+    ];
+    let around = list_around(tx, firm, between, visit.order).await?;
+    let counts = |one: &&StoredBooking| {
         one.is_taken || requester == Requester::Operator && one.operator_id == visit.operator
     };
-    // Each operator records the teams that work for it: the largest number counts as all.
-    let most = |figure: fn(&Terms) -> u32| all_terms.iter().map(|(_, terms)| figure(terms)).max();
-    let all_teams = most(|terms| terms.teams).unwrap_or(0);
-    let all_jobs = most(|terms| terms.jobs_a_team_day).unwrap_or(1);
-    let needed = |whose: &dyn Fn(&Booking) -> bool, jobs: u32| {
-        let ships = others.iter().filter(|one| counts(one) && whose(one));
-        let ships = ships.map(|one| (place(&one.port), one.vessel_id));
-        teams(ships.chain([there.clone()]), jobs)
-    };
-    let is_own = |one: &Booking| one.operator_id == visit.operator;
-    let is_full = needed(&|_| true, all_jobs) > all_teams
-        || own.is_some_and(|(_, terms)| needed(&is_own, terms.jobs_a_team_day) > terms.teams);
-    if !is_full {
-        return Ok(());
+    let mut others: Vec<&StoredBooking> = around.iter().filter(counts).collect();
+    if !capacity.can_do(&others, visit.operator) {
+        // Fewer teams than were booked keep only their own days from further jobs.
+        let that_day = day(visit.port, visit.from);
+        others.retain(|one| one.day() == that_day);
     }
-    Err(Error::WrongState(match requester {
+    for team in candidates {
+        let new = StoredBooking::new(visit, team.clone());
+        let orders: Vec<&StoredBooking> = others.iter().copied().chain([&new]).collect();
+        if capacity.can_do(&orders, visit.operator) {
+            return Ok(team);
+        }
+    }
+    Err(Error::WrongState(no_team_left(
+        firm_name, visit, &others, requester,
+    )))
+}
+
+/// Returns the teams that may do a visit, the expected one first.
+///
+/// # Errors
+/// [`Error::WrongState`] when none may, by the operator's terms and the firm's statement. Terms
+/// are the operator's own record: they do not bind the firm itself.
+async fn candidates(
+    tx: &mut Tx,
+    firm_name: &str,
+    capacity: &Capacity,
+    visit: &Visit<'_>,
+    requester: Requester,
+) -> Result<Vec<Option<String>>> {
+    let job = JobHours {
+        port: visit.port,
+        from: visit.from,
+        until: visit.until,
+    };
+    let (flag, licence) = particulars::adjuster_requirements(tx, visit.vessel).await?;
+    let judged = capacity
+        .own
+        .as_ref()
+        .or(capacity.is_stated.then_some(&capacity.all));
+    let suitable = judged.map_or(Ok(vec![None]), |firm| {
+        suitable_teams(firm, &job, flag, licence.as_deref())
+    });
+    let mut teams = match (suitable, requester) {
+        (Ok(teams), _) => teams,
+        (Err(_), Requester::Firm) => Vec::new(),
+        (Err(unsuitable), Requester::Operator) => {
+            let (why, instead) = match unsuitable {
+                Unsuitable::Time(why) => (why, "time"),
+                Unsuitable::Firm(why) => (why, "firm"),
+            };
+            return Err(Error::WrongState(format!(
+                "by your terms, {firm_name} {why}: choose another {instead}, or change the terms"
+            )));
+        }
+    };
+    if requester == Requester::Firm {
+        let named = capacity.all.teams.named().iter();
+        let any = named.map(|team| Some(team.name.clone()));
+        let more: Vec<Option<String>> = any.filter(|team| !teams.contains(team)).collect();
+        teams.extend(more);
+        if teams.is_empty() {
+            teams.push(None);
+        }
+    }
+    teams.sort_by_key(|team| team.as_deref() != visit.team);
+    Ok(teams)
+}
+
+/// Describes a lack of teams, in words for the requester.
+fn no_team_left(
+    firm_name: &str,
+    visit: &Visit<'_>,
+    others: &[&StoredBooking],
+    requester: Requester,
+) -> String {
+    let that_day = day(visit.port, visit.from);
+    let clock = |port: &str, at: Instant| zone(port).local(at).format("%H:%M").to_string();
+    let [from, until] = [visit.from, visit.until].map(|at| clock(visit.port, Instant(at.0)));
+    let near: Vec<&StoredBooking> = {
+        let same = others.iter().copied().filter(|one| one.day() == that_day);
+        let same: Vec<&StoredBooking> = same.collect();
+        if same.is_empty() {
+            others.to_vec()
+        } else {
+            same
+        }
+    };
+    let hours = |one: &StoredBooking| {
+        let booking = one.booking();
+        let [from, until] = [booking.from, booking.to].map(|at| clock(&one.port, at));
+        let day = booking.day;
+        format!("from {from} to {until} on {day}")
+    };
+    match requester {
         Requester::Operator => {
-            let own = others.iter().filter(|one| counts(one) && is_own(one));
+            let own = near.iter().filter(|one| one.operator_id == visit.operator);
             let own: Vec<String> = own
                 .map(|one| {
-                    let Booking {
-                        order_id,
-                        vessel_name,
-                        port,
-                        ..
-                    } = one;
-                    format!("work order {order_id} of {vessel_name} at {port}")
+                    let (order, ship, port) = (one.order_id, &one.vessel_name, &one.port);
+                    format!("work order {order} of {ship} at {port} {}", hours(one))
                 })
                 .collect();
             let holding = if own.is_empty() {
@@ -259,18 +242,19 @@ pub async fn require_capacity(
             } else {
                 format!(": you have {}", own.join(", "))
             };
-            format!("{firm_name} has no team left on {that_day}{holding}")
+            format!("{firm_name} has no team left on {that_day} from {from} to {until}{holding}")
         }
         Requester::Firm => {
-            let ships = others.iter().filter(|one| one.is_taken);
+            let ships = near.iter().filter(|one| one.is_taken);
             let ships: BTreeSet<String> = ships
-                .map(|one| format!("{} at {}", one.vessel_name, one.port))
+                .map(|one| format!("{} at {} {}", one.vessel_name, one.port, hours(one)))
                 .collect();
             let ships: Vec<String> = ships.into_iter().collect();
             format!(
-                "your firm has no team left on {that_day}: it goes to {}",
+                "your firm has no team left on {that_day}: it goes to {}, and the job is from \
+                 {from} to {until}",
                 ships.join(", ")
             )
         }
-    }))
+    }
 }

@@ -4,29 +4,35 @@
 //! admin, who connects them, sees all.
 
 mod capacity;
+mod engaged;
 mod firm_api;
 pub(crate) mod keys;
-
+mod port_names;
 mod store;
+mod taken;
+mod teams;
 mod terms;
+mod terms_api;
 
-pub use capacity::{
-    Booking, Requester, Visit, bookings, named_port, require_capacity, teams_taken,
-};
+pub use capacity::{Requester, require_capacity};
+pub use engaged::{EngagedFirm, of_operator};
+pub use port_names::named_port;
 pub use store::{create, engage, exists, find_name};
-pub use terms::{Terms, TermsChanged, find_terms, of_operator};
+pub use taken::{StoredBooking, Visit, list_bookings, teams_taken};
+pub use terms::{Terms, TermsChanged, find_terms};
 
 use axum::extract::FromRef;
 use binnacle_platform::app::App;
 use utoipa_axum::router::OpenApiRouter;
 
-/// Routes of firms, their terms and their keys.
+/// Routes of firms, their terms, teams and keys.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     firm_api::router()
-        .merge(terms::router())
+        .merge(terms_api::router())
+        .merge(teams::router())
         .merge(keys::router())
 }

@@ -147,17 +147,26 @@ pub(super) async fn remove_terms(tx: &mut Tx, operator: OperatorId, firm: FirmId
     Ok(removed > 0)
 }
 
-/// Lists the firms that work for an operator: id, name, and terms if any.
-pub(super) async fn list_with_terms(
-    db: &Db,
-    operator: OperatorId,
-) -> Result<Vec<(FirmId, String, Option<String>)>> {
+/// Firm that works for an operator, as it is stored.
+#[derive(sqlx::FromRow)]
+pub(super) struct StoredFirm {
+    pub(super) id: FirmId,
+    pub(super) name: String,
+    /// Terms for the operator, as JSON.
+    pub(super) terms: Option<String>,
+    /// The firm's own statement of its teams, as JSON.
+    pub(super) teams: Option<String>,
+}
+
+/// Lists the firms that work for an operator.
+pub(super) async fn list_with_terms(db: &Db, operator: OperatorId) -> Result<Vec<StoredFirm>> {
     rows!(
         db,
-        (FirmId, String, Option<String>),
-        "SELECT f.id, f.name, t.terms FROM firms f
+        StoredFirm,
+        "SELECT f.id, f.name, t.terms, s.teams FROM firms f
          JOIN operator_firms w ON w.firm_id = f.id AND w.operator_id = $1
          LEFT JOIN firm_terms t ON t.firm_id = f.id AND t.operator_id = $1
+         LEFT JOIN firm_teams s ON s.firm_id = f.id
          ORDER BY f.id",
         operator
     )

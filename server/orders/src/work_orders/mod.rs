@@ -30,6 +30,7 @@ pub(crate) mod webhook_message;
 
 pub use log::canonical_json::sha256_hex;
 pub use new_order::{NewOffer, NewOrder};
+pub use payload::hours::Hours;
 pub use payload::port_call::{Alongside, CallFit};
 pub use refusal::{Cure, NotAdjustableFields, Refusal};
 pub use state::State;

@@ -1,5 +1,6 @@
 //! Requests for a new order and for its offer to firms.
 
+use crate::work_orders::payload::hours::Hours;
 use binnacle_adjustment::adjust::Limits;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::http::{optional_text, text};
@@ -19,6 +20,7 @@ const MAX_DAYS_AHEAD: f64 = 730.0;
     "vessel_id": "0199aa00-0000-7000-8000-000000000001",
     "compass_id": "0199aa00-0000-7000-8000-000000000002",
     "port": "Bilbao", "berth": "A5", "planned_at": "2026-11-22T08:00:00Z",
+    "planned_until": "2026-11-22T11:00:00Z",
     "adjuster_name": "M. Etxeberria", "adjuster_licence": "ES-CA-114", "firm": "Nervión Compass"
 }))]
 pub struct NewOrder {
@@ -35,6 +37,9 @@ pub struct NewOrder {
     pub berth: Option<String>,
     /// Time of the job.
     pub planned_at: Time,
+    /// End of the job, within 24 hours; three hours later by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub planned_until: Option<Time>,
     /// Adjuster.
     #[serde(default)]
     #[schema(max_length = 200)]
@@ -78,6 +83,9 @@ pub struct NewOffer {
     /// Fees from a plan; other firms are offered the fee of their terms for a single compass.
     #[serde(skip)]
     pub fees_eur: BTreeMap<FirmId, f64>,
+    /// Teams from a plan; of other firms any suitable team comes.
+    #[serde(skip)]
+    pub teams: BTreeMap<FirmId, String>,
 }
 
 pub(crate) fn default_answer_hours() -> u32 {
@@ -96,6 +104,11 @@ pub(crate) fn require_near_date(planned_at: Time, now: Time) -> Result<()> {
 }
 
 impl NewOrder {
+    /// Hours of the job.
+    pub(crate) fn hours(&self) -> Hours {
+        Hours::new(self.planned_at, self.planned_until)
+    }
+
     /// Validates the request.
     pub fn checked(self, now: Time) -> Result<NewOrder> {
         let past = |grace_h: f64| now.0.seconds_since(self.planned_at.0) > grace_h * 3600.0;
@@ -108,6 +121,7 @@ impl NewOrder {
             });
         }
         require_near_date(self.planned_at, now)?;
+        let hours = self.hours().checked()?;
         let optional = |field, value: Option<String>| optional_text(field, value.as_deref());
         if let Some(limits) = &self.limits {
             limits.check_ranges().map_err(|error| Error::Invalid {
@@ -121,6 +135,7 @@ impl NewOrder {
             adjuster_name: optional("adjuster_name", self.adjuster_name)?,
             adjuster_licence: optional("adjuster_licence", self.adjuster_licence)?,
             firm: optional("firm", self.firm)?,
+            planned_until: Some(hours.until),
             ..self
         })
     }

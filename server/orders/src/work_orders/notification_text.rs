@@ -72,7 +72,7 @@ pub(crate) fn withdrawn(summary: &Summary, last: &Entry) -> Notice {
 
 fn notice(headline: &Headline, facts: String, summary: &Summary, entry: &Entry) -> Notice {
     let mut text = facts;
-    if let Some(quote) = entry.content.event().quote() {
+    if let Some(quote) = entry.content.event().quote(&summary.port) {
         // Writing to a string cannot fail.
         let _ = write!(text, "\n{}: {quote}\n", entry.author.name);
     }
@@ -98,7 +98,7 @@ fn facts(summary: &Summary, reader: Reader) -> String {
         format!("Vessel:    {}", summary.vessel_name),
         format!("Compass:   {}", summary.compass_name),
         format!("Port:      {}{berth}", summary.port),
-        format!("Planned:   {}", summary.planned_at.to_the_minute()),
+        format!("Planned:   {}", summary.hours().describe(&summary.port)),
     ];
     match (reader, &summary.firm) {
         (Reader::Firm, _) => lines.push(format!("Operator:  {}", summary.operator_name)),

@@ -47,6 +47,9 @@ pub(crate) struct Offer {
     /// Offered fee, euros, without travel; `null` if the firm has no terms.
     #[schema(required)]
     pub fee_eur: Option<f64>,
+    /// Team of the firm that is to come; `null` if its teams have no names.
+    #[schema(required)]
+    pub team: Option<String>,
     /// Proposed or agreed terms.
     #[schema(required)]
     pub terms: Option<Terms>,
@@ -101,6 +104,7 @@ impl Offers {
         offer.state = state;
         offer.new_terms = None;
         offer.answer_by = exchange.answer_by;
+        offer.team = exchange.team.clone().or(offer.team.take());
         offer.terms = exchange.terms.clone().or(offer.terms.take());
         offer.text = exchange.text.clone().or(offer.text.take());
     }

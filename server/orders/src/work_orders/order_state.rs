@@ -5,6 +5,7 @@
 
 use crate::work_orders::offers::Offers;
 use crate::work_orders::payload::chosen_plan::ChosenPlan;
+use crate::work_orders::payload::hours::Hours;
 use crate::work_orders::payload::photograph::Photo;
 use crate::work_orders::payload::port_call::CallChange;
 use crate::work_orders::payload::recorded_reading::RecordedReading;
@@ -19,7 +20,6 @@ use binnacle_adjustment::adjust::{
     CompletedStep, Corrector, Limits, PredictedTable, Step, UpdatedPrediction,
 };
 use binnacle_adjustment::binnacle::{Binnacle, Setting};
-use binnacle_platform::time::Time;
 
 /// State of an order.
 #[derive(Clone, Debug, Default)]
@@ -28,8 +28,8 @@ pub(crate) struct OrderState {
     pub state: State,
     /// Offers to firms.
     pub offers: Offers,
-    /// Time of the job, as ordered or agreed.
-    pub planned_at: Option<Time>,
+    /// Hours of the job, as ordered or agreed.
+    pub hours: Option<Hours>,
     /// Change of the port call since the time was agreed.
     pub call_change: Option<CallChange>,
     /// Port of the job, if its call has ever moved.
@@ -106,9 +106,9 @@ impl OrderState {
         self.state = self.offers.state();
     }
 
-    /// Takes over another agreed time, with the port call as it is now.
-    pub(crate) fn agree_time(&mut self, planned_at: Time) {
-        (self.planned_at, self.call_change) = (Some(planned_at), None);
+    /// Takes over other agreed hours, with the port call as it is now.
+    pub(crate) fn agree_time(&mut self, hours: Hours) {
+        (self.hours, self.call_change) = (Some(hours), None);
     }
 
     /// Takes over a reading to plan from; returns whether it was accepted.

@@ -2,6 +2,7 @@
 
 use crate::work_orders::offers::{Offer, OfferState};
 use crate::work_orders::payload::exchange::Exchange;
+use crate::work_orders::payload::hours::{Hours, at_offset, local_time, utc_offset_s};
 use crate::work_orders::payload::port_call::CallFit;
 use crate::work_orders::state::State;
 use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
@@ -36,6 +37,24 @@ pub(crate) struct Summary {
     pub berth: Option<String>,
     /// Time of the job.
     pub planned_at: Time,
+    /// End of the job.
+    pub planned_until: Time,
+    /// Time of the job in the port's legal time; `null` if the port is unknown.
+    #[schema(required, example = "2026-12-08T08:00:00+01:00")]
+    #[sqlx(skip)]
+    pub planned_at_local: Option<String>,
+    /// End of the job in the port's legal time.
+    #[schema(required, example = "2026-12-08T11:00:00+01:00")]
+    #[sqlx(skip)]
+    pub planned_until_local: Option<String>,
+    /// Time of the job as the port's clocks would have shown it when it was agreed; `null` unless
+    /// its legal time has changed since. The job stays at its instant.
+    #[schema(required)]
+    #[sqlx(skip)]
+    pub agreed_at_local: Option<String>,
+    /// Seconds by which the port's legal time was ahead of UTC when the time was agreed.
+    #[serde(skip)]
+    pub agreed_utc_offset_s: Option<i64>,
     /// Name of the adjuster.
     #[schema(required)]
     pub adjuster_name: Option<String>,
@@ -107,10 +126,36 @@ impl Summary {
             ..self.clone()
         }
     }
-    /// Takes over the agreed time and berth.
+
+    /// Hours of the job.
+    pub(crate) fn hours(&self) -> Hours {
+        Hours::new(self.planned_at, Some(self.planned_until))
+    }
+
+    /// Brings the local times in step with the hours.
+    pub(crate) fn with_local_times(mut self) -> Summary {
+        self.update_local_times();
+        self
+    }
+
+    /// Brings the local times in step with the hours.
+    pub(crate) fn update_local_times(&mut self) {
+        self.planned_at_local = local_time(&self.port, self.planned_at);
+        self.planned_until_local = local_time(&self.port, self.planned_until);
+        let now_s = utc_offset_s(&self.port, self.planned_at);
+        let agreed_s = self.agreed_utc_offset_s.filter(|_| now_s.is_some());
+        let agreed_s = agreed_s.filter(|agreed_s| Some(*agreed_s) != now_s);
+        self.agreed_at_local = agreed_s.and_then(|ahead_s| at_offset(self.planned_at, ahead_s));
+    }
+
+    /// Takes over the agreed hours and berth.
     pub(crate) fn apply_terms(&mut self, exchange: &Exchange) {
         if let Some(terms) = &exchange.terms {
-            self.planned_at = terms.planned_at;
+            let hours = terms.hours();
+            if hours != self.hours() {
+                self.agreed_utc_offset_s = utc_offset_s(&self.port, hours.from);
+            }
+            (self.planned_at, self.planned_until) = (hours.from, hours.until);
             self.berth = terms.berth.clone().or(self.berth.take());
         }
     }

@@ -56,6 +56,14 @@ struct MessageOrder<'a> {
     berth: Option<&'a str>,
     /// Time of the job.
     planned_at: Time,
+    /// End of the job.
+    planned_until: Time,
+    /// Time of the job in the port's legal time; `null` if the port is unknown.
+    #[schema(required)]
+    planned_at_local: Option<&'a str>,
+    /// End of the job in the port's legal time.
+    #[schema(required)]
+    planned_until_local: Option<&'a str>,
     /// Fit of its time to the port call, if that has moved since the time was agreed.
     #[schema(required)]
     call_fit: Option<CallFit>,
@@ -82,6 +90,9 @@ pub(crate) struct MessageEntry<'a> {
     /// Fee offered, or accepted as offered, euros.
     #[schema(required)]
     fee_eur: Option<f64>,
+    /// Team of the firm that is to come, if its teams have names.
+    #[schema(required)]
+    team: Option<&'a str>,
     /// Proposed or agreed terms.
     #[schema(required)]
     terms: Option<&'a Terms>,
@@ -106,6 +117,7 @@ impl<'a> MessageEntry<'a> {
             by: Some(&entry.author.name),
             firm_id: exchange.map(|exchange| exchange.firm.firm_id),
             fee_eur: exchange.and_then(|exchange| exchange.fee_eur),
+            team: exchange.and_then(|exchange| exchange.team.as_deref()),
             terms: exchange.and_then(|exchange| exchange.terms.as_ref()),
             text: exchange.and_then(|exchange| exchange.text.as_deref()),
             call: event.call_change(),
@@ -121,6 +133,7 @@ impl<'a> MessageEntry<'a> {
             by: None,
             firm_id: None,
             fee_eur: None,
+            team: None,
             terms: None,
             text: None,
             call: None,
@@ -158,6 +171,9 @@ impl OrderAndEntry<'_> {
                 port: &order.port,
                 berth: order.berth.as_deref(),
                 planned_at: order.planned_at,
+                planned_until: order.planned_until,
+                planned_at_local: order.planned_at_local.as_deref(),
+                planned_until_local: order.planned_until_local.as_deref(),
                 call_fit: order.call_fit,
             },
             entry: self.entry,

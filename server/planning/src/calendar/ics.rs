@@ -1,15 +1,13 @@
 //! Orders, port calls and due dates as iCalendar events (RFC 5545).
 //!
 //! Invariants: an event keeps its UID, and its SEQUENCE grows with the order's log, the call's
-//! revisions or the versions of the due date. Times are UTC and due dates are days. Equal records
-//! give equal bytes.
+//! revisions or the versions of the due date. Times are UTC, an order's also in the port's time in
+//! its description, and due dates are days. Equal records give equal bytes.
 
 use super::store::{CalendarCall, CalendarDueDate, CalendarOrder};
 use anyhow::Context;
-use binnacle_orders::work_orders::CallFit;
-use binnacle_orders::work_orders::State;
+use binnacle_orders::work_orders::{CallFit, Hours, State};
 use binnacle_platform::time::Time;
-use binnacle_schedule::input::JOB_H;
 use binnacle_schedule::ports::{self, PortCode};
 use chrono::{DateTime, NaiveDate, TimeDelta, Utc};
 use icalendar::{Alarm, Calendar, Component, Event, EventLike, EventStatus, Property, Trigger};
@@ -168,7 +166,6 @@ struct LogEntry {
 }
 
 fn render_order(order: &CalendarOrder, public_url: Option<&str>) -> anyhow::Result<Event> {
-    let starts = to_utc(order.planned_at)?;
     let entry: LogEntry = serde_json::from_str(&order.line)?;
     let place = match &order.berth {
         Some(berth) => format!("{}, {berth}", order.port),
@@ -181,8 +178,8 @@ fn render_order(order: &CalendarOrder, public_url: Option<&str>) -> anyhow::Resu
         .add_property("SEQUENCE", order.last_seq.to_string())
         .timestamp(to_utc(entry.at)?)
         .last_modified(to_utc(entry.at)?)
-        .starts(starts)
-        .ends(starts + usual_duration())
+        .starts(to_utc(order.planned_at)?)
+        .ends(to_utc(order.planned_until)?)
         .summary(&format!(
             "Adjust {}, {} ({state})",
             order.compass_name, order.vessel_name
@@ -207,7 +204,14 @@ fn render_order(order: &CalendarOrder, public_url: Option<&str>) -> anyhow::Resu
 }
 
 fn describe_order(order: &CalendarOrder) -> String {
-    let mut lines = vec![format!("Operator: {}", order.operator_name)];
+    let hours = Hours {
+        from: order.planned_at,
+        until: order.planned_until,
+    };
+    let mut lines = vec![
+        hours.describe(&order.port),
+        format!("Operator: {}", order.operator_name),
+    ];
     if let Some(firm) = &order.firm {
         lines.push(format!("Firm: {firm}"));
     }
@@ -216,12 +220,6 @@ fn describe_order(order: &CalendarOrder) -> String {
     }
     lines.extend(find_warning(order).map(str::to_owned));
     lines.join("\n")
-}
-
-/// Returns the usual duration of an adjustment at the berth.
-fn usual_duration() -> TimeDelta {
-    #[allow(clippy::cast_possible_truncation, reason = "a few hours")]
-    TimeDelta::seconds((JOB_H * 3600.0) as i64)
 }
 
 /// Returns the warning for an order still to be done whose port call has moved.

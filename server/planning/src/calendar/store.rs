@@ -62,6 +62,7 @@ pub(super) struct CalendarOrder {
     pub port: String,
     pub berth: Option<String>,
     pub planned_at: Time,
+    pub planned_until: Time,
     pub vessel_name: String,
     pub compass_name: String,
     pub operator_name: String,
@@ -168,7 +169,8 @@ pub(super) async fn list_orders(
     rows!(
         db,
         CalendarOrder,
-        "SELECT o.id, o.port, o.berth, o.planned_at, v.name AS vessel_name,
+        "SELECT o.id, o.port, o.berth, o.planned_at, o.planned_until,
+                v.name AS vessel_name,
                 c.name AS compass_name, p.name AS operator_name, o.firm, o.adjuster_name,
                 o.last_seq, e.line, o.call_fit,
                 CASE f.state WHEN 'open' THEN 'offered' WHEN 'proposed' THEN 'proposed'

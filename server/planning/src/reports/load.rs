@@ -145,12 +145,12 @@ fn worst_deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviati
 
 async fn list_jobs(db: &Db, operator: OperatorId, span: CompletionPeriod) -> Result<Vec<Job>> {
     let done = completion::completed_orders(db, operator, span).await?;
-    let terms = firms::of_operator(db, operator).await?;
+    let firms = firms::of_operator(db, operator).await?;
     let visits = number_visits(&done);
     let usual = |nth: usize| {
         let firm = done[nth].firm_id?;
-        let (_, _, terms) = terms.iter().find(|(of, _, _)| *of == firm)?;
-        let terms = terms.as_ref()?;
+        let engaged = firms.iter().find(|of| of.id == firm)?;
+        let terms = engaged.terms.as_ref()?;
         let same =
             |before: usize| visits[before] == visits[nth] && done[before].firm_id == Some(firm);
         let is_further = (0..nth).any(same);

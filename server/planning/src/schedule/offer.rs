@@ -1,7 +1,7 @@
 //! `/schedule/offer`: work orders for a planned job, offered to its firm.
 //!
-//! Invariants: a compass has one order under way at a time. A firm gets no more jobs on a day than
-//! it has teams for. A job is offered whole or not at all, and the fees of its orders add up to
+//! Invariants: a compass has one order under way at a time. A firm gets no job for whose hours it
+//! has no team. A job is offered whole or not at all, and the fees of its orders add up to
 //! the job's fee in the plan.
 
 use super::plan::{Job, Plan};
@@ -98,7 +98,7 @@ async fn offer_job(
     let terms = firms::of_operator(&app.db, writer.operator).await?;
     let terms: BTreeMap<FirmId, Terms> = terms
         .into_iter()
-        .filter_map(|(firm, _, terms)| Some((firm, terms?)))
+        .filter_map(|firm| Some((firm.id, firm.terms?)))
         .collect();
     let mut tx = request.begin().await?;
     for compass in &job.compasses {
@@ -120,6 +120,7 @@ async fn offer_job(
             at_once: false,
             text: text.clone(),
             fees_eur: terms.iter().map(fees).collect(),
+            teams: BTreeMap::from([(job.firm_id, job.team.clone())]),
         };
         let id = OrderId::new();
         dispatch::link_once(&mut tx, job.vessel_id, id, job.call_id).await?;
@@ -184,6 +185,8 @@ fn new_order(job: &Job, compass_id: CompassId, offer: NewOffer) -> NewOrder {
         port: format!("{} ({})", job.port_name, job.port),
         berth: job.berth.clone(),
         planned_at: job.from,
+        // A plan of an older release has the hours of the day.
+        planned_until: (!job.team.is_empty()).then_some(job.to),
         adjuster_name: None,
         adjuster_licence: None,
         firm: None,

@@ -42,7 +42,7 @@ where
     "compass_id": "0199aa00-0000-7000-8000-000000000002",
     "call_id": "0199aa00-0000-7000-8000-000000000004",
     "firm_id": "0199aa00-0000-7000-8000-000000000003",
-    "day": "2026-12-09", "note": "agreed by telephone"
+    "day": "2026-12-09", "from": "2026-12-09T08:00:00Z", "note": "agreed by telephone"
 }))]
 struct NewPin {
     /// The compass.
@@ -53,6 +53,9 @@ struct NewPin {
     firm_id: FirmId,
     /// The day, in the port's time.
     day: NaiveDate,
+    /// Beginning of the job, on that day; any of the firm's hours, if absent.
+    #[serde(default)]
+    from: Option<Time>,
     /// Note, such as the reason.
     #[schema(max_length = 200)]
     note: Option<String>,
@@ -72,6 +75,9 @@ pub(super) struct Pin {
     pub(super) firm_id: FirmId,
     /// The day.
     pub(super) day: NaiveDate,
+    /// Beginning of the job; `null` for any of the firm's hours.
+    #[schema(required)]
+    pub(super) from: Option<Time>,
     /// Note, such as the reason.
     #[schema(required)]
     pub(super) note: Option<String>,
@@ -131,12 +137,21 @@ async fn pin(
             ),
         });
     }
+    if let Some(from) = new.from {
+        let is_there = (call.eta..=call.etd).contains(&from);
+        if !is_there || Instant(from.0).date(zone) != new.day {
+            return Err(Error::Invalid {
+                field: "from",
+                detail: format!("{} is no hour of the call on {}", from.0, new.day),
+            });
+        }
+    }
     let firms = firms::of_operator(&app.db, writer.operator).await?;
-    let pinned = firms.iter().find(|(firm, _, _)| *firm == new.firm_id);
-    let Some((_, name, Some(terms))) = pinned else {
-        return Err(Error::NotFound("firm"));
-    };
-    if let Some(problem) = terms.problems().first() {
+    let pinned = firms.iter().find(|firm| firm.id == new.firm_id);
+    let pinned = pinned.filter(|firm| firm.terms.is_some());
+    let pinned = pinned.ok_or(Error::NotFound("firm"))?;
+    if let Some(problem) = pinned.problems().first() {
+        let name = &pinned.name;
         return Err(Error::Invalid {
             field: "firm_id",
             detail: format!("the schedule cannot plan with {name}: {problem}"),
@@ -150,6 +165,7 @@ async fn pin(
         call_id: new.call_id,
         firm_id: new.firm_id,
         day: new.day,
+        from: new.from,
         note,
         created_at: now,
         created_by: session::name_of(&mut tx, writer.user).await?,
@@ -209,12 +225,12 @@ async fn store_pin(tx: &mut Tx, pin: &Pin) -> Result<()> {
     execute!(
         tx,
         "INSERT INTO schedule_pins (vessel_id, compass_id, call_id, firm_id, day, note,
-                                    created_at, created_by)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)
+                                    created_at, created_by, from_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)
          ON CONFLICT (vessel_id, compass_id) DO UPDATE
          SET call_id = excluded.call_id, firm_id = excluded.firm_id, day = excluded.day,
              note = excluded.note, created_at = excluded.created_at,
-             created_by = excluded.created_by",
+             created_by = excluded.created_by, from_at = excluded.from_at",
         pin.vessel_id,
         pin.compass_id,
         pin.call_id,
@@ -222,7 +238,8 @@ async fn store_pin(tx: &mut Tx, pin: &Pin) -> Result<()> {
         pin.day.to_string(),
         pin.note.as_deref(),
         pin.created_at,
-        pin.created_by.as_str()
+        pin.created_by.as_str(),
+        pin.from
     )?;
     Ok(())
 }
@@ -234,6 +251,7 @@ struct Row {
     call_id: CallId,
     firm_id: FirmId,
     day: String,
+    from_at: Option<Time>,
     note: Option<String>,
     created_at: Time,
     created_by: String,
@@ -256,6 +274,7 @@ pub(super) async fn list(db: &Db, operator: OperatorId) -> Result<Vec<Pin>> {
             call_id: row.call_id,
             firm_id: row.firm_id,
             day: row.day.parse().map_err(anyhow::Error::from)?,
+            from: row.from_at,
             note: row.note,
             created_at: row.created_at,
             created_by: row.created_by,

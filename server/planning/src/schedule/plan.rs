@@ -107,10 +107,22 @@ pub struct Job {
     pub firm_name: String,
     /// The day, in the port's time.
     pub day: NaiveDate,
-    /// Start of the window in which the vessel is alongside and the firm works.
+    /// Beginning of the job on board.
     pub from: Time,
-    /// End of that window.
+    /// Its end.
     pub to: Time,
+    /// Beginning in the port's legal time.
+    #[serde(default)]
+    #[schema(example = "2026-12-08T08:00:00+01:00")]
+    pub from_local: String,
+    /// End in the port's legal time.
+    #[serde(default)]
+    #[schema(example = "2026-12-08T11:00:00+01:00")]
+    pub to_local: String,
+    /// Team of the firm: its name, or a number from 1 where its teams are alike; empty in a plan of
+    /// an older release, whose `from` and `to` bound the day's hours.
+    #[serde(default)]
+    pub team: String,
     /// State of the job.
     pub state: JobState,
     /// `true` when a person pinned it.
@@ -188,7 +200,7 @@ pub struct Change {
     pub why: String,
 }
 
-/// Place and day of a job, with its price.
+/// Place and time of a job, with its price.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = PlanPlace)]
 pub struct Place {
@@ -202,6 +214,10 @@ pub struct Place {
     pub firm_name: String,
     /// The day.
     pub day: NaiveDate,
+    /// Beginning, if it is known.
+    #[serde(default)]
+    #[schema(required)]
+    pub from: Option<Time>,
     /// Fee and travel, euros; `null` when no plan had this job.
     #[schema(required)]
     pub paid_eur: Option<f64>,

@@ -21,12 +21,13 @@ use binnacle_platform::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, Ves
 use binnacle_platform::time::Time;
 use binnacle_schedule::input::{JobState, read};
 use binnacle_schedule::plan::{self as solved, ChangeKind, Schedule, plan};
-use binnacle_schedule::ports;
+use binnacle_schedule::ports::{self, PortCode};
+use binnacle_schedule::time::Instant;
+use chrono::SecondsFormat;
 use metrics::histogram;
 use std::collections::{BTreeMap, BTreeSet};
 use std::str::FromStr;
 use std::sync::Arc;
-use std::time::Instant;
 use tracing::info;
 use uuid::Uuid;
 
@@ -75,7 +76,7 @@ async fn solve_locked(
             finish_requests(begin_transaction(app, request).await?, operator, &loaded).await?;
             return Ok(former);
         }
-        let begun = Instant::now();
+        let begun = std::time::Instant::now();
         let (schedule, loaded) = solve_with_held_teams(app, slots, operator, loaded, &lock).await?;
         let took_s = begun.elapsed().as_secs_f64();
         histogram!("binnacle_schedule_seconds").record(took_s);
@@ -133,21 +134,23 @@ async fn solve_with_held_teams(
     }
 }
 
-/// Returns the orders whose compass the plan has with another firm or on another day.
+/// Returns the orders whose compass the plan has with another firm or at another hour.
 fn orders_moved_away(schedule: &Schedule, loaded: &LoadedInput) -> Result<Vec<OrderId>> {
     let mut planned = BTreeMap::new();
     for job in &schedule.jobs {
         for need in &job.needs {
             planned.insert(
                 CompassId(parse_id(need)?),
-                (FirmId(parse_id(&job.firm)?), job.day),
+                (FirmId(parse_id(&job.firm)?), Time(job.from.0)),
             );
         }
     }
     let agreed = loaded.names.agreed.iter();
     let moved = agreed
         .filter(|(_, agreed)| loaded.teams_left_to_plan.contains_key(&agreed.order_id))
-        .filter(|(compass, agreed)| planned.get(*compass) != Some(&(agreed.firm_id, agreed.day)));
+        .filter(|(compass, agreed)| {
+            planned.get(*compass) != Some(&(agreed.firm_id, agreed.hours.from))
+        });
     Ok(moved.map(|(_, agreed)| agreed.order_id).collect())
 }
 
@@ -287,7 +290,8 @@ fn build_job(one: solved::PlannedJob, names: &Names) -> Result<Job> {
     let (vessel_id, vessel_name) = find_vessel(&compasses, names);
     let (call_id, firm_id) = (CallId(parse_id(&one.call)?), FirmId(parse_id(&one.firm)?));
     let here = |agreed: &Agreed| {
-        (agreed.call_id, agreed.firm_id, agreed.day) == (call_id, firm_id, one.day)
+        let is_then = agreed.hours.from.0 == one.from.0;
+        (agreed.call_id, agreed.firm_id) == (call_id, firm_id) && is_then
     };
     let pinned = compasses
         .iter()
@@ -308,6 +312,9 @@ fn build_job(one: solved::PlannedJob, names: &Names) -> Result<Job> {
         day: one.day,
         from: Time(one.from.0),
         to: Time(one.to.0),
+        from_local: local_time(one.port, one.from),
+        to_local: local_time(one.port, one.to),
+        team: one.team,
         // The solver holds a pinned job like a confirmed one; no firm has agreed to it.
         state: match one.state {
             JobState::Confirmed if pinned => JobState::Proposed,
@@ -395,10 +402,17 @@ fn build_place(at: &solved::Place, names: &Names, job: Option<&Job>) -> Result<P
         firm_id,
         firm_name: names.firm_name(firm_id),
         day: at.day,
+        from: at.hour.map(|hour| Time(hour.0)),
         paid_eur: job
             .filter(|job| job.day == at.day)
             .map(|job| round_cents(job.fee_eur + job.travel_eur)),
     })
+}
+
+/// Writes an instant in a port's legal time, with its offset.
+fn local_time(port: PortCode, at: Instant) -> String {
+    let there = at.in_zone(ports::zone(port));
+    there.to_rfc3339_opts(SecondsFormat::Secs, false)
 }
 
 fn name_compasses(needs: &[String], names: &Names) -> Result<Vec<Compass>> {

@@ -213,6 +213,7 @@ async fn a_firm_proposes_other_terms_and_the_operator_agrees(server: TestServer)
     let seen = parties.view_order().await;
     assert_eq!(seen["offers"][0]["terms"], proposal()["terms"]);
     assert_eq!(seen["planned_at"], "2026-11-22T08:00:00Z");
+    assert_eq!(seen["planned_until"], "2026-11-22T11:00:00Z");
     let own = parties.post(rosa, "/accept", &json!({})).await;
     assert_eq!(own.problem(), "wrong-state");
     let agreed = parties
@@ -221,6 +222,7 @@ async fn a_firm_proposes_other_terms_and_the_operator_agrees(server: TestServer)
         .good();
     assert_eq!(agreed["state"], "accepted");
     assert_eq!(agreed["planned_at"], NEXT_DAY);
+    assert_eq!(agreed["planned_until"], "2026-11-22T17:00:00Z");
     assert_eq!(agreed["berth"], "A7", "{agreed}");
     assert_eq!(agreed["firm"], "rosa");
     let repeated = parties.post(&parties.ada, "/accept", &json!({})).await;

@@ -100,7 +100,8 @@ async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(server: TestS
     assert_eq!(proposed["state"], "proposed");
     let seen = ada.get(&order).await.good();
     assert_eq!(seen["offers"][0]["fee_eur"], 1800.0);
-    let new_terms = json!({ "planned_at": before["planned_at"], "fee_eur": 2100.0 });
+    let new_terms = json!({ "planned_at": before["planned_at"],
+                            "planned_until": before["planned_until"], "fee_eur": 2100.0 });
     assert_eq!(seen["offers"][0]["terms"], new_terms);
     let notifications = ada.get("/notifications?kind=answered").await.good();
     assert!(

@@ -218,7 +218,7 @@ async fn a_new_day_is_within_the_port_call_and_the_firms_capacity(server: TestSe
         .await;
     for (at, texts) in [
         ("2026-12-15T08:00:00Z", "no call at NLRTM"),
-        ("2026-12-18T16:00:00Z", "lasts three hours"),
+        ("2026-12-18T16:00:00Z", "to 2026-12-18 19:00 UTC"),
         (&format!("{taken}T12:00:00Z"), "no team left"),
     ] {
         let refused = agreed.retime(at).await;

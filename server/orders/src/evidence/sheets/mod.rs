@@ -13,7 +13,7 @@ use binnacle_drawing::angles::{east_west, heading_to_a_tenth, latitude, longitud
 use binnacle_drawing::paper::{LEFT, Paper, RIGHT};
 use binnacle_drawing::{About, Sheet, Style, pdf, svg};
 use serde_json::Value;
-use values::{minute, number, word};
+use values::{local_minute, minute, number, word};
 
 /// Draws the record as PDF.
 ///
@@ -122,10 +122,20 @@ fn draw_head(paper: &mut Paper, record: &Value) {
             "Port, berth",
             join_nonempty(&[word(&record["port"]), word(&record["berth"])]),
         ),
-        ("Adjusted at", minute(&record["adjusted_at"])),
+        ("Agreed hours", word(&record["agreed_hours"]["words"])),
+        ("Adjusted at", adjusted_at(record)),
         ("Work order", word(&record["order"])),
     ] {
         paper.fact(label, &value);
+    }
+}
+
+/// Time of the adjustment, with the port's own where the record has it.
+fn adjusted_at(record: &Value) -> String {
+    let at = minute(&record["adjusted_at"]);
+    match local_minute(&record["adjusted_at_local"]) {
+        Some(local) => format!("{at}; {local}, port's time"),
+        None => at,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::time::Time;
+use chrono::DateTime;
 use serde_json::Value;
 
 /// Text of a value; empty for null.
@@ -22,4 +23,11 @@ pub(super) fn number(value: &Value) -> f64 {
 pub(super) fn minute(value: &Value) -> String {
     let text = word(value);
     Timestamp::parse(&text).map_or(text, |time| Time(time).to_the_minute())
+}
+
+/// Local time for people, as `2026-11-21 11:00 (UTC+01:00)`; `None` where it is no time with an
+/// offset.
+pub(super) fn local_minute(value: &Value) -> Option<String> {
+    let time = DateTime::parse_from_rfc3339(value.as_str()?).ok()?;
+    Some(time.format("%Y-%m-%d %H:%M (UTC%:z)").to_string())
 }

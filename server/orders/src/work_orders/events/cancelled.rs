@@ -32,7 +32,7 @@ impl Event for Cancelled {
         ))
     }
 
-    fn quote(&self) -> Option<String> {
+    fn quote(&self, _port: &str) -> Option<String> {
         Some(self.text.clone())
     }
 

@@ -51,9 +51,9 @@ pub(crate) trait Event {
         None
     }
 
-    /// Author's own words, below the headline.
-    fn quote(&self) -> Option<String> {
-        self.exchange().and_then(Exchange::quote)
+    /// Author's own words, below the headline, with hours in the time of the order's port.
+    fn quote(&self, port: &str) -> Option<String> {
+        self.exchange().and_then(|exchange| exchange.quote(port))
     }
 
     /// Returns whether offers may change by it.

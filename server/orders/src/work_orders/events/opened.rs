@@ -20,6 +20,6 @@ pub(crate) struct Opened {
 impl Event for Opened {
     fn apply(&self, state: &mut OrderState) {
         state.limits = self.order.limits.unwrap_or_default();
-        state.planned_at = Some(self.order.planned_at);
+        state.hours = Some(self.order.hours());
     }
 }

@@ -34,7 +34,7 @@ impl Event for SeaVerification {
         self.headline()
     }
 
-    fn quote(&self) -> Option<String> {
+    fn quote(&self, _port: &str) -> Option<String> {
         Some(self.words.clone())
     }
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod chosen_plan;
 pub(crate) mod exchange;
+pub(crate) mod hours;
 pub(crate) mod photograph;
 pub(crate) mod plan_basis;
 pub(crate) mod port_call;

@@ -1,8 +1,8 @@
 //! Port call of an order, and its changes.
 
+use crate::work_orders::payload::hours::Hours;
 use binnacle_platform::ids::CallId;
 use binnacle_platform::time::Time;
-use binnacle_schedule::input::JOB_H;
 use binnacle_schedule::ports::{self, PortCode};
 use binnacle_schedule::time::Instant;
 use binnacle_schedule::zone::Zone;
@@ -16,9 +16,9 @@ use utoipa::ToSchema;
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = WorkOrderCallFit)]
 pub enum CallFit {
-    /// The vessel is alongside at that time, for at least three hours.
+    /// The vessel is alongside in the job's hours.
     Fits,
-    /// The vessel is alongside for three hours on that day, but not from that hour.
+    /// The vessel is alongside long enough on that day, but not in those hours.
     OtherHour,
     /// The vessel is not alongside on that day: agree on another.
     NeedsNewDay,
@@ -74,21 +74,21 @@ impl Alongside {
         }
     }
 
-    /// Judges the fit of a time, for an order at a port.
-    pub fn fit(&self, port: &str, planned_at: Time) -> CallFit {
+    /// Judges the fit of a job's hours, for an order at a port.
+    pub fn fit(&self, port: &str, hours: Hours) -> CallFit {
         if self.port != port {
             return CallFit::NoCall;
         }
         let (eta, etd) = (Instant(self.eta.0), Instant(self.etd.0));
-        let planned = Instant(planned_at.0);
-        if planned >= eta && etd.hours_since(planned) >= JOB_H {
+        let planned = Instant(hours.from.0);
+        if planned >= eta && Instant(hours.until.0) <= etd {
             return CallFit::Fits;
         }
         let zone = zone_of(port);
         let day = planned.date(zone);
         let [begins, ends] = [day, day + Days::new(1)].map(|day| zone.midnight(day));
         let alongside_h = etd.min(ends).hours_since(eta.max(begins));
-        if alongside_h >= JOB_H {
+        if alongside_h >= hours.length_h() {
             CallFit::OtherHour
         } else {
             CallFit::NeedsNewDay
@@ -127,6 +127,11 @@ mod tests {
         Time(Instant::parse(text).unwrap().0)
     }
 
+    /// The usual three hours from a time.
+    fn job(from: Time) -> Hours {
+        Hours::new(from, None)
+    }
+
     fn rotterdam(eta: &str, etd: &str) -> Alongside {
         Alongside::new(PortCode::parse("NLRTM").unwrap(), time(eta), time(etd))
     }
@@ -142,10 +147,23 @@ mod tests {
             ("2026-12-07T12:00:00Z", CallFit::NeedsNewDay),
             ("2026-12-09T12:00:00Z", CallFit::NeedsNewDay),
         ] {
-            assert_eq!(call.fit("NLRTM", time(at)), fit, "{at}");
+            assert_eq!(call.fit("NLRTM", job(time(at))), fit, "{at}");
         }
+        let until = |until| Hours::new(time("2026-12-08T10:00:00Z"), Some(time(until)));
+        assert_eq!(
+            call.fit("NLRTM", until("2026-12-08T18:00:00Z")),
+            CallFit::Fits
+        );
+        assert_eq!(
+            call.fit("NLRTM", until("2026-12-08T19:00:00Z")),
+            CallFit::OtherHour
+        );
+        assert_eq!(
+            call.fit("NLRTM", until("2026-12-08T23:00:00Z")),
+            CallFit::NeedsNewDay
+        );
         let there = time("2026-12-08T08:00:00Z");
-        assert_eq!(call.fit("BEANR", there), CallFit::NoCall);
+        assert_eq!(call.fit("BEANR", job(there)), CallFit::NoCall);
     }
 
     #[test]
@@ -159,9 +177,9 @@ mod tests {
         );
         assert_eq!(call.eta_local, "2026-12-09T01:00:00+09:00");
         let noon = time("2026-12-09T03:00:00Z");
-        assert_eq!(call.fit("JPYOK", noon), CallFit::OtherHour);
+        assert_eq!(call.fit("JPYOK", job(noon)), CallFit::OtherHour);
         let eighth = time("2026-12-08T03:00:00Z");
-        assert_eq!(call.fit("JPYOK", eighth), CallFit::NeedsNewDay);
+        assert_eq!(call.fit("JPYOK", job(eighth)), CallFit::NeedsNewDay);
     }
 
     #[test]
@@ -180,9 +198,9 @@ mod tests {
         let call = Alongside::new(port, eta, etd);
         assert_eq!(call.eta_local, "2026-10-25T21:00:00+01:00");
         let noon = time("2026-10-25T11:00:00Z");
-        assert_eq!(call.fit("ESVGO", noon), CallFit::OtherHour);
+        assert_eq!(call.fit("ESVGO", job(noon)), CallFit::OtherHour);
         let later = Alongside::new(port, time("2026-10-25T20:01:00Z"), etd);
-        assert_eq!(later.fit("ESVGO", noon), CallFit::NeedsNewDay);
+        assert_eq!(later.fit("ESVGO", job(noon)), CallFit::NeedsNewDay);
         // In summer the same hour is 19:00 UTC.
         let july = Alongside::new(port, time("2026-07-15T19:00:00Z"), etd);
         assert_eq!(july.eta_local, "2026-07-15T21:00:00+02:00");

@@ -23,7 +23,8 @@ macro_rules! summary_sql {
                     v.name AS vessel_name, o.id, o.compass_id, c.name AS compass_name,
                     CASE f.state WHEN 'open' THEN 'offered' WHEN 'proposed' THEN 'proposed'
                                  ELSE o.state END AS state,
-                    o.port, o.berth, o.planned_at, o.adjuster_name, o.adjuster_licence, o.firm,
+                    o.port, o.berth, o.planned_at, o.planned_until,
+                    o.agreed_utc_offset_s, o.adjuster_name, o.adjuster_licence, o.firm,
                     o.firm_id, o.created_at, o.created_by, o.completed_at, o.last_seq,
                     o.last_sha256, o.call_fit,
                     CASE WHEN f.firm_id IS NULL THEN o.answer_by ELSE f.answer_by END
@@ -57,7 +58,7 @@ pub(crate) struct ListedOrders {
 /// Lists orders, the newest first.
 pub(crate) async fn list(db: &Db, tenant: Tenant, asked: &ListedOrders) -> Result<Vec<Summary>> {
     let filter = &asked.filter;
-    Ok(rows!(
+    let found = rows!(
         db,
         Summary,
         summary_sql!(
@@ -79,7 +80,8 @@ pub(crate) async fn list(db: &Db, tenant: Tenant, asked: &ListedOrders) -> Resul
         asked.planned.0,
         asked.planned.1,
         asked.limit
-    )?)
+    )?;
+    Ok(found.into_iter().map(Summary::with_local_times).collect())
 }
 
 /// Finds the summary of an order that the tenant sees.
@@ -99,6 +101,7 @@ pub(crate) async fn find_summary(db: &Db, tenant: Tenant, id: OrderId) -> Result
         tenant.operator(),
         id
     )?
+    .map(Summary::with_local_times)
     .ok_or(Error::NotFound("work order"))
 }
 
@@ -164,6 +167,7 @@ pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<S
         vessel,
         id
     )?
+    .map(Summary::with_local_times)
     .ok_or(Error::NotFound("work order"))?;
     let lines = rows!(
         in tx,

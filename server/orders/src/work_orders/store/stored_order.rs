@@ -64,5 +64,6 @@ impl StoredOrder {
         if let Some(entry) = self.log.last() {
             entry.content.event().update_summary(summary);
         }
+        summary.update_local_times();
     }
 }

@@ -6,6 +6,7 @@ use crate::work_orders::log::entry::{Author, Entry};
 use crate::work_orders::log::seal::{SealedEntry, readers};
 use crate::work_orders::new_order::NewOrder;
 use crate::work_orders::offers::Offers;
+use crate::work_orders::payload::hours::utc_offset_s;
 use crate::work_orders::state::State;
 use crate::work_orders::store::stored_order::StoredOrder;
 use crate::work_orders::summary::Summary;
@@ -79,8 +80,8 @@ pub(crate) async fn insert(
         tx,
         "INSERT INTO work_orders (vessel_id, id, compass_id, state, port, berth, planned_at,
                                   adjuster_name, adjuster_licence, firm, created_at, created_by,
-                                  last_seq, last_sha256)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, 0, '')",
+                                  last_seq, last_sha256, planned_until, agreed_utc_offset_s)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, 0, '', $13, $14)",
         order.vessel_id,
         id,
         order.compass_id,
@@ -92,7 +93,9 @@ pub(crate) async fn insert(
         order.adjuster_licence.as_deref(),
         order.firm.as_deref(),
         now,
-        author.name.as_str()
+        author.name.as_str(),
+        order.hours().until,
+        utc_offset_s(&order.port, order.planned_at)
     )?;
     Ok(())
 }
@@ -155,7 +158,7 @@ pub(crate) async fn append(
         "UPDATE work_orders
          SET state = $3, last_seq = $4, last_sha256 = $5, firm_id = $6, answer_by = $7,
              planned_at = $8, berth = $9, adjuster_name = $10, adjuster_licence = $11, firm = $12,
-             call_fit = $13
+             call_fit = $13, planned_until = $14, agreed_utc_offset_s = $15
          WHERE vessel_id = $1 AND id = $2",
         summary.vessel_id,
         summary.id,
@@ -169,7 +172,9 @@ pub(crate) async fn append(
         summary.adjuster_name.as_deref(),
         summary.adjuster_licence.as_deref(),
         summary.firm.as_deref(),
-        summary.call_fit
+        summary.call_fit,
+        summary.planned_until,
+        summary.agreed_utc_offset_s
     )?;
     let last = stored.log.last().map(|entry| entry.content.event());
     if last.is_some_and(Event::changes_offers) {
@@ -182,15 +187,16 @@ async fn write_offers(tx: &mut Tx, stored: &StoredOrder, offers: &Offers) -> Res
     for offer in &offers.all {
         execute!(
             &mut *tx,
-            "INSERT INTO work_order_offers (vessel_id, order_id, firm_id, state, answer_by)
-             VALUES ($1, $2, $3, $4, $5)
+            "INSERT INTO work_order_offers (vessel_id, order_id, firm_id, state, answer_by, team)
+             VALUES ($1, $2, $3, $4, $5, $6)
              ON CONFLICT (vessel_id, order_id, firm_id) DO UPDATE
-             SET state = excluded.state, answer_by = excluded.answer_by",
+             SET state = excluded.state, answer_by = excluded.answer_by, team = excluded.team",
             stored.summary.vessel_id,
             stored.summary.id,
             offer.firm_id,
             offer.state,
-            offer.answer_by
+            offer.answer_by,
+            offer.team.as_deref()
         )?;
     }
     Ok(())

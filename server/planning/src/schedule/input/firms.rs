@@ -4,12 +4,12 @@ use super::names::Names;
 use super::orders::Order;
 use crate::port_calls::StoredCall;
 use crate::schedule::plan::{LeftOut, NO_TERMS};
-use binnacle_orders::firms;
+use binnacle_orders::firms::{self, StoredBooking};
 use binnacle_platform::app::App;
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{FirmId, OperatorId, OrderId};
 use binnacle_platform::time::Time;
-use binnacle_schedule::input::{Declined, Firm, Taken};
+use binnacle_schedule::input::{Declined, Firm};
 use std::collections::BTreeMap;
 use uuid::Uuid;
 
@@ -20,28 +20,30 @@ pub(super) async fn load_firms(
     names: &mut Names,
 ) -> Result<(Vec<Firm>, Vec<LeftOut>)> {
     let (mut planned_with, mut left_out) = (Vec::new(), Vec::new());
-    for (firm_id, firm_name, terms) in firms::of_operator(&app.db, operator).await? {
-        names.firms.insert(firm_id, firm_name.clone());
-        let problems = terms.as_ref().map(firms::Terms::problems);
-        match (terms, problems.as_deref()) {
-            (Some(terms), Some([])) => {
-                planned_with.push(terms.firm(&firm_id.to_string(), Some(&firm_name)));
-            }
-            (_, problems) => left_out.push(LeftOut {
-                firm_id,
-                firm_name,
-                why: problems
-                    .and_then(<[String]>::first)
-                    .map_or(NO_TERMS, String::as_str)
-                    .to_owned(),
+    for engaged in firms::of_operator(&app.db, operator).await? {
+        names.firms.insert(engaged.id, engaged.name.clone());
+        let Some(firm) = engaged.planned() else {
+            left_out.push(LeftOut {
+                firm_id: engaged.id,
+                firm_name: engaged.name,
+                why: NO_TERMS.to_owned(),
+            });
+            continue;
+        };
+        match engaged.problems().first() {
+            None => planned_with.push(firm),
+            Some(why) => left_out.push(LeftOut {
+                firm_id: engaged.id,
+                firm_name: engaged.name,
+                why: why.clone(),
             }),
         }
     }
     Ok((planned_with, left_out))
 }
 
-/// Books the teams of orders that are not jobs of the plan with that firm: other operators' orders,
-/// and this operator's beside the plan or offered to several firms at once.
+/// Books the hours of teams for orders that are not jobs of the plan with that firm: other
+/// operators' orders, and this operator's beside the plan or offered to several firms at once.
 pub(super) async fn book_teams(
     app: &App,
     operator: OperatorId,
@@ -52,15 +54,10 @@ pub(super) async fn book_teams(
     let from = Time(as_of.0.plus_seconds(-86_400.0));
     for firm in firms {
         let id = FirmId(Uuid::parse_str(&firm.id).map_err(anyhow::Error::from)?);
-        let all = firms::bookings(&app.db, id, from).await?;
-        let booked = all.iter().filter(|one| {
-            let counts = one.is_taken || one.operator_id == operator;
-            counts && planned.get(&one.order_id) != Some(&id)
-        });
-        let days = firms::teams_taken(booked, firm.jobs_a_team_day).into_iter();
-        firm.taken = days
-            .map(|(day, teams)| Taken::whole_day(day, teams))
-            .collect();
+        let mut booked = firms::list_bookings(&app.db, id, from).await?;
+        booked.retain(|one| one.is_taken || one.operator_id == operator);
+        let is_planned = |one: &StoredBooking| planned.get(&one.order_id) == Some(&id);
+        firm.taken = firms::teams_taken(firm, &booked, is_planned);
     }
     Ok(())
 }

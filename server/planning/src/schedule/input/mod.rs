@@ -19,10 +19,10 @@ use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_schedule::calls::PortCall;
-use binnacle_schedule::input::{self, Declined, Input, JobState, Vessel};
+use binnacle_schedule::input::{self, Declined, Input, Vessel};
 use binnacle_schedule::time::Instant;
 use firms::{book_teams, find_declined, load_firms};
-use former::FormerJobs;
+use former::{FormerJobs, StartingJob};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -92,25 +92,13 @@ pub(super) async fn load_input(
     let pins = pins::list(&app.db, operator).await?;
     let mut former_jobs = FormerJobs::new(&needs, &planned_with);
     for (compass, agreed) in &names.agreed {
-        former_jobs.add(
-            &[*compass],
-            agreed.call_id,
-            agreed.firm_id,
-            agreed.day,
-            agreed.state,
-        );
+        former_jobs.add(&[*compass], agreed.starting_job(&planned_with));
     }
     let known = declinations.into_iter();
     let known = known.filter(|one| former_jobs.knows(&one.need, &one.firm));
     let declined: Vec<Declined> = known.collect();
     for pin in &pins {
-        let is_kept = former_jobs.add(
-            &[pin.compass_id],
-            pin.call_id,
-            pin.firm_id,
-            pin.day,
-            JobState::Confirmed,
-        );
+        let is_kept = former_jobs.add(&[pin.compass_id], StartingJob::of_pin(pin));
         if is_kept {
             names.pinned.insert(pin.compass_id);
         }

@@ -1,11 +1,11 @@
 //! Names for the plan, and the orders that are its jobs.
 
-use super::former::FormerJobs;
+use super::former::{FormerJobs, StartingJob};
 use super::orders::Order;
 use crate::needs::Facts;
 use crate::port_calls::StoredCall;
 use crate::schedule::plan::{Compass, UnderWay};
-use binnacle_orders::work_orders::State;
+use binnacle_orders::work_orders::{Hours, State};
 use binnacle_platform::ids::{CallId, CompassId, FirmId, OrderId, VesselId};
 use binnacle_schedule::input::{Firm, JobState};
 use chrono::NaiveDate;
@@ -24,8 +24,8 @@ pub(crate) struct Names {
     pub(crate) declined: BTreeMap<CompassId, OrderId>,
 }
 
-/// Job that an order has agreed for a compass: firm, port call and day.
-#[derive(Clone, Copy, Debug)]
+/// Job that an order has agreed for a compass: firm, port call and hours.
+#[derive(Clone, Debug)]
 pub(crate) struct Agreed {
     pub(crate) vessel_id: VesselId,
     pub(crate) order_id: OrderId,
@@ -33,6 +33,28 @@ pub(crate) struct Agreed {
     pub(crate) call_id: CallId,
     pub(crate) firm_id: FirmId,
     pub(crate) day: NaiveDate,
+    pub(crate) hours: Hours,
+    /// The firm's team, if it has a name.
+    pub(crate) team: Option<String>,
+}
+
+impl Agreed {
+    /// Returns the job that the plan starts from. A team that the firm no longer has is left open.
+    pub(super) fn starting_job(&self, firms: &[Firm]) -> StartingJob {
+        let id = self.firm_id.to_string();
+        let firm = firms.iter().find(|firm| firm.id == id);
+        let teams = firm.map_or(&[][..], |firm| firm.teams.named());
+        let is_known = |name: &String| teams.iter().any(|team| team.name == *name);
+        StartingJob {
+            call: self.call_id,
+            firm: self.firm_id,
+            day: self.day,
+            from: Some(self.hours.from),
+            to: Some(self.hours.until),
+            team: self.team.clone().filter(is_known),
+            state: self.state,
+        }
+    }
 }
 
 impl Names {
@@ -95,6 +117,8 @@ impl Names {
                 call_id,
                 firm_id,
                 day: order.day(port.map(|call| call.port.as_str())),
+                hours: order.hours(),
+                team: order.team.clone(),
             };
             self.agreed.insert(order.compass_id, agreed);
         }

@@ -6,7 +6,7 @@
 use crate::port_calls::StoredCall as Call;
 use crate::schedule::plan::{LeftOut, NO_TERMS};
 use binnacle_orders::firms::named_port;
-use binnacle_orders::work_orders::{Alongside, CallFit, State};
+use binnacle_orders::work_orders::{Alongside, CallFit, Hours, State};
 use binnacle_platform::db::{Db, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, VesselId};
@@ -26,7 +26,10 @@ pub(crate) struct Order {
     pub(crate) state: State,
     /// Port as the operator wrote it, or as the schedule names it.
     port: String,
-    pub(crate) planned_at: Time,
+    planned_at: Time,
+    planned_until: Time,
+    /// The firm's team, if it has a name.
+    pub(crate) team: Option<String>,
     /// Firm to which it is offered or that has accepted it.
     pub(crate) firm_id: Option<FirmId>,
     /// Port call of the order, where known.
@@ -57,7 +60,8 @@ pub(crate) async fn list_under_way(db: &Db, operator: OperatorId) -> Result<Vec<
     let mut found = rows!(
         db,
         Order,
-        "SELECT o.vessel_id, o.id, o.compass_id, o.state, o.port, o.planned_at, f.firm_id, l.call_id
+        "SELECT o.vessel_id, o.id, o.compass_id, o.state, o.port, o.planned_at,
+                o.planned_until, f.team, f.firm_id, l.call_id
          FROM work_orders o
          JOIN vessels v ON v.id = o.vessel_id
          LEFT JOIN work_order_offers f ON f.vessel_id = o.vessel_id AND f.order_id = o.id
@@ -80,7 +84,8 @@ pub(crate) async fn list_declined(db: &Db, operator: OperatorId) -> Result<Vec<O
     Ok(rows!(
         db,
         Order,
-        "SELECT o.vessel_id, o.id, o.compass_id, o.state, o.port, o.planned_at, f.firm_id, l.call_id
+        "SELECT o.vessel_id, o.id, o.compass_id, o.state, o.port, o.planned_at,
+                o.planned_until, f.team, f.firm_id, l.call_id
          FROM work_order_offers f
          JOIN work_orders o ON o.vessel_id = f.vessel_id AND o.id = f.order_id
          JOIN vessels v ON v.id = o.vessel_id
@@ -153,7 +158,7 @@ impl Order {
     fn problem_of_time(&self, there: &Alongside) -> Option<String> {
         let meant = named_port(&self.port).map(|port| port.code.to_string());
         let port = meant.unwrap_or_else(|| there.port.clone());
-        match there.fit(&port, self.planned_at) {
+        match there.fit(&port, self.hours()) {
             CallFit::Fits => None,
             CallFit::NoCall => Some(format!("its port call is now at {}", there.port)),
             CallFit::OtherHour | CallFit::NeedsNewDay => Some(format!(
@@ -169,10 +174,24 @@ impl Order {
         self.state == State::Cancelled
     }
 
+    /// Returns the hours of the job, to the whole second as a plan has them.
+    pub(crate) fn hours(&self) -> Hours {
+        let [from, until] = [self.planned_at, self.planned_until].map(whole_second);
+        Hours { from, until }
+    }
+
     /// Returns the planned day, in a port's time.
     pub(crate) fn day(&self, port: Option<&str>) -> NaiveDate {
         let port = port.and_then(|port| PortCode::parse(port).ok());
         let zone = port.map_or_else(Zone::utc, ports::zone);
         Instant(self.planned_at.0).date(zone)
     }
+}
+
+/// Returns the begun second.
+fn whole_second(at: Time) -> Time {
+    let micros = at.0.micros().rem_euclid(1_000_000);
+    #[allow(clippy::cast_precision_loss, reason = "less than a million")]
+    let into_s = micros as f64 / 1e6;
+    Time(at.0.plus_seconds(-into_s))
 }

@@ -3,10 +3,10 @@
 use crate::work_orders::events::event::{Circumstances, Event, Headline};
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::exchange::{Exchange, NamedFirm};
+use crate::work_orders::payload::hours::Hours;
 use crate::work_orders::payload::port_call::{CallChange, CallFit, in_both_zones, zone_of};
 use crate::work_orders::{message_kinds, notice_kinds};
 use binnacle_platform::outbox;
-use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 
 /// Change of the order's port call, as one firm is informed of it.
@@ -51,10 +51,10 @@ impl Event for CallMoved {
 }
 
 impl CallMoved {
-    /// An announcement to one firm of a call's change, for a job planned at this time.
-    pub(crate) fn new(firm: NamedFirm, call: CallChange, planned_at: Time) -> CallMoved {
+    /// An announcement to one firm of a call's change, for a job planned in these hours.
+    pub(crate) fn new(firm: NamedFirm, call: CallChange, hours: Hours) -> CallMoved {
         let exchange = Exchange {
-            text: Some(describe(&call, planned_at)),
+            text: Some(describe(&call, hours)),
             ..Exchange::with(firm)
         };
         CallMoved { exchange, call }
@@ -74,7 +74,7 @@ impl CallMoved {
 }
 
 /// Describes a call's change, and what to agree on, in sentences.
-fn describe(call: &CallChange, planned_at: Time) -> String {
+fn describe(call: &CallChange, hours: Hours) -> String {
     let became = match &call.is {
         None => format!(
             "The port call at {}, {}, is withdrawn.",
@@ -102,7 +102,7 @@ fn describe(call: &CallChange, planned_at: Time) -> String {
             is.describe()
         ),
     };
-    let agreed = in_both_zones(planned_at, zone_of(&call.was.port));
+    let agreed = in_both_zones(hours.from, zone_of(&call.was.port));
     let what = match call.fit {
         CallFit::Fits => format!("The job's time, {agreed}, still lies in it."),
         CallFit::OtherHour => {

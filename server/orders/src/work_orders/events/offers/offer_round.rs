@@ -30,6 +30,9 @@ pub(crate) struct OfferedFirm {
     /// Offered fee, euros; `None` if the firm has no terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fee_eur: Option<f64>,
+    /// Team that is to come; `None` if the firm's teams have no names.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub team: Option<String>,
 }
 
 impl Event for OfferRound {
@@ -49,6 +52,7 @@ impl Event for OfferRound {
             state: OfferState::Waiting,
             answer_by: None,
             fee_eur: one.fee_eur,
+            team: one.team.clone(),
             terms: None,
             new_terms: None,
             text: self.text.clone(),

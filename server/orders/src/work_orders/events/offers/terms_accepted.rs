@@ -19,10 +19,10 @@ impl Event for ProposalAccepted {
         state.offers.set(&self.0, OfferState::Accepted);
         state.offers.withdraw_unless(OfferState::is_waiting);
         if let Some(terms) = &self.0.terms
-            && state.planned_at != Some(terms.planned_at)
+            && state.hours != Some(terms.hours())
         {
             // A proposal of a fee alone leaves the time and its call as they are.
-            state.agree_time(terms.planned_at);
+            state.agree_time(terms.hours());
         }
         state.follow_offers();
     }

@@ -18,7 +18,7 @@ impl Event for RetimeAccepted {
     fn apply(&self, state: &mut OrderState) {
         state.offers.set(&self.0, OfferState::Accepted);
         if let Some(terms) = &self.0.terms {
-            state.agree_time(terms.planned_at);
+            state.agree_time(terms.hours());
         }
     }
 

@@ -1,0 +1,157 @@
+//! Firms that work for an operator: terms, and what the firm states of itself.
+
+use super::port_names::zone;
+use super::teams::{self, StatedTeams};
+use super::terms::Terms;
+use super::{named_port, store};
+use binnacle_platform::db::Db;
+use binnacle_platform::error::Result;
+use binnacle_platform::ids::{FirmId, OperatorId};
+use binnacle_platform::time::Time;
+use binnacle_schedule::input::{self, Team};
+use binnacle_schedule::rules::Flag;
+use binnacle_schedule::time::Instant;
+use chrono::{Datelike, NaiveDate};
+
+/// Firm that works for an operator.
+pub struct EngagedFirm {
+    /// Its id.
+    pub id: FirmId,
+    /// Its name.
+    pub name: String,
+    /// Its terms for the operator, if any.
+    pub terms: Option<Terms>,
+    /// Its own statement of its teams.
+    pub(super) stated: StatedTeams,
+}
+
+/// Lists the firms that work for an operator.
+pub async fn of_operator(db: &Db, operator: OperatorId) -> Result<Vec<EngagedFirm>> {
+    let found = store::list_with_terms(db, operator).await?;
+    let read = |stored: store::StoredFirm| {
+        let terms = stored.terms.as_deref().map(serde_json::from_str);
+        Ok(EngagedFirm {
+            id: stored.id,
+            name: stored.name,
+            terms: terms.transpose()?,
+            stated: teams::read(stored.teams.as_deref())?,
+        })
+    };
+    found.into_iter().map(read).collect()
+}
+
+impl EngagedFirm {
+    /// Firm as the schedule's input; `None` without terms.
+    pub fn planned(&self) -> Option<input::Firm> {
+        let terms = self.terms.as_ref()?;
+        let firm = terms.firm(&self.id.to_string(), Some(&self.name));
+        Some(teams::join(firm, &self.stated))
+    }
+
+    /// Reasons for which the schedule leaves the firm out.
+    pub fn problems(&self) -> Vec<String> {
+        let Some(firm) = self.planned() else {
+            return vec!["terms: no terms are set".to_owned()];
+        };
+        let error = input::check_firm(&firm).err();
+        let wrong = error.map(|error| format!("{}: {}", error.field, error.detail));
+        let none = || "teams: a firm without teams does no jobs".to_owned();
+        let none = (firm.teams.count() == 0).then(none);
+        wrong.into_iter().chain(none).collect()
+    }
+}
+
+/// Hours of a job at a port, however that is named.
+#[derive(Clone, Copy)]
+pub(super) struct JobHours<'a> {
+    pub(super) port: &'a str,
+    pub(super) from: Time,
+    pub(super) until: Time,
+}
+
+/// Returns the names of a firm's teams that may do a job, one empty name for teams without names.
+/// It is an error, in words, when none may.
+pub(super) fn suitable_teams(
+    firm: &input::Firm,
+    job: &JobHours<'_>,
+    flag: Option<Flag>,
+    licence: Option<&str>,
+) -> std::result::Result<Vec<Option<String>>, Unsuitable> {
+    if let Some(flag) = flag
+        && !firm.is_accepted_by(Some(flag))
+    {
+        let why = format!("is not accepted by flag {}", flag.letters());
+        return Err(Unsuitable::Firm(why));
+    }
+    let teams: Vec<Option<&Team>> = match firm.teams.named() {
+        [] => vec![None],
+        named => named.iter().map(Some).collect(),
+    };
+    let mut first = None;
+    let mut suitable = Vec::new();
+    for team in teams {
+        match obstacle(firm, team, job, licence) {
+            None => suitable.push(team.map(|team| team.name.clone())),
+            Some(why) => first = first.or(Some(why)),
+        }
+    }
+    match first {
+        Some(why) if suitable.is_empty() => Err(why),
+        _ => Ok(suitable),
+    }
+}
+
+/// Reason for which a firm may not do a job.
+pub(super) enum Unsuitable {
+    /// It does not work then.
+    Time(String),
+    /// It may not adjust the vessel.
+    Firm(String),
+}
+
+/// Reason for which a team may not do a job.
+fn obstacle(
+    firm: &input::Firm,
+    team: Option<&Team>,
+    job: &JobHours<'_>,
+    licence: Option<&str>,
+) -> Option<Unsuitable> {
+    let port = named_port(job.port);
+    let zone = zone(job.port);
+    let day = Instant(job.from.0).date(zone);
+    let time = |why| Some(Unsuitable::Time(why));
+    if !works(firm, team, day) {
+        return time(format!("does not work on {day}, a {}", day.format("%A")));
+    }
+    let first_hour = team.and_then(|team| team.first_hour);
+    let last_hour = team.and_then(|team| team.last_hour);
+    let hours = [
+        first_hour.unwrap_or(firm.first_hour),
+        last_hour.unwrap_or(firm.last_hour),
+    ];
+    let [opens, closes] = hours.map(|hour| Instant::at(day, hour, zone));
+    let (from, until) = (Instant(job.from.0), Instant(job.until.0));
+    if port.is_some() && !(opens <= from && until <= closes) {
+        return time(format!("works from {opens} to {closes} on {day}"));
+    }
+    let held = team.and_then(|team| team.licences.as_ref());
+    let held = held.unwrap_or(&firm.licences);
+    if let Some(licence) = licence.filter(|asked| !held.iter().any(|held| held == asked)) {
+        return Some(Unsuitable::Firm(format!(
+            "does not hold the licence that the vessel requires, {licence}"
+        )));
+    }
+    let ports = team.and_then(|team| team.ports.as_ref());
+    if let (Some(port), Some(ports)) = (port, ports)
+        && !ports.contains(&port.code)
+    {
+        return Some(Unsuitable::Firm(format!("has no team at {}", port.name)));
+    }
+    None
+}
+
+fn works(firm: &input::Firm, team: Option<&Team>, day: NaiveDate) -> bool {
+    let own = team.and_then(|team| team.working_days.as_ref());
+    let days = own.unwrap_or(&firm.working_days);
+    days.contains(&day.weekday()) && !firm.closed.contains(&day)
+}
