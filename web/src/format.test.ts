@@ -98,6 +98,34 @@ describe('times where a ship is', () => {
   });
 });
 
+describe('hours of a job', () => {
+  const [from, until] = ['2026-12-08T07:00:00Z', '2026-12-08T10:00:00Z'];
+
+  test('are UTC’s, the port’s, or both', () => {
+    expect(format.hoursAtSea(from, until, 1, 'utc')).toBe('8 Dec 2026, 07:00 to 10:00 UTC');
+    expect(format.hoursAtSea(from, until, 1, 'ship')).toBe('8 Dec 2026, 08:00 to 11:00 UTC+1');
+    expect(format.hoursAtSea(from, until, 1, 'both')).toBe(
+      '8 Dec 2026, 07:00 to 10:00 UTC (08:00 to 11:00 UTC+1)',
+    );
+    expect(format.hoursAtSea(from, until, undefined, 'both')).toBe(
+      '8 Dec 2026, 07:00 to 10:00 UTC',
+    );
+  });
+
+  test('name each day where it is another one', () => {
+    expect(format.hoursAtSea(from, until, 15, 'both')).toBe(
+      '8 Dec 2026, 07:00 to 10:00 UTC (22:00 to 9 Dec 2026, 01:00 UTC+15)',
+    );
+    expect(format.hoursAtSea(from, until, -8, 'both')).toBe(
+      '8 Dec 2026, 07:00 to 10:00 UTC (7 Dec 2026, 23:00 to 8 Dec 2026, 02:00 UTC−8)',
+    );
+  });
+
+  test('are a beginning alone where no end is known', () => {
+    expect(format.hoursAtSea(from, null, undefined, 'both')).toBe('8 Dec 2026, 07:00 UTC');
+  });
+});
+
 describe('times and counts', () => {
   test('times are UTC whatever the zone of the reader', () => {
     expect(format.time('2026-11-14T08:30:59Z')).toBe('14 Nov 2026, 08:30 UTC');

@@ -138,6 +138,34 @@ export function atSea(
   return `${time(date)} (${day(there) === day(date) ? '' : on}${hour})`;
 }
 
+/**
+ * Hours from one instant to another where clocks keep a zone:
+ * `8 Dec 2026, 07:00 to 10:00 UTC (08:00 to 11:00 UTC+1)`, each with its day where that differs.
+ */
+export function hoursAtSea(
+  from: string | Date | null | undefined,
+  until: string | Date | null | undefined,
+  zone: Zone | undefined,
+  clocks: Clocks,
+): string {
+  const [begin, end] = [toDate(from), toDate(until)];
+  if (!begin || !end) return atSea(from, zone, clocks);
+  const utc = hoursBy(begin, end, 'UTC');
+  const aheadBy = zone === undefined ? 0 : aheadMs(zone, begin.getTime());
+  if (zone === undefined || !aheadBy || clocks === 'utc') return utc;
+  const endAheadBy = aheadMs(zone, end.getTime()) ?? aheadBy;
+  const there = new Date(begin.getTime() + aheadBy);
+  const hours = hoursBy(there, new Date(end.getTime() + endAheadBy), ahead(aheadBy));
+  if (clocks === 'ship') return hours;
+  return `${utc} (${day(there) === day(begin) ? hours.replace(/^[^,]*, /, '') : hours})`;
+}
+
+function hoursBy(begin: Date, end: Date, zone: string): string {
+  const [first, last] = [begin, end].map((date) => date.toISOString().slice(11, 16));
+  const on = day(begin) === day(end) ? '' : `${day(end)}, `;
+  return `${day(begin)}, ${first ?? ''} to ${on}${last ?? ''} ${zone}`;
+}
+
 /** The nautical zone of a longitude: hours ahead of UTC. */
 export const zoneOf = (lon: number): number => Math.sign(lon) * Math.round(Math.abs(lon) / 15) || 0;
 

@@ -1,7 +1,7 @@
 /** The calls about firms that adjust compasses. */
 
 import { answer, client, longestPage, page } from './client';
-import type { FirmTerms, NewFirmKey } from './types';
+import type { FirmTeams, FirmTerms, NewFirmKey } from './types';
 
 export const listFirmKeys = async (id: string) => {
   const params = { path: { id }, query: page(longestPage) };
@@ -25,3 +25,9 @@ export const setTerms = (id: string, body: FirmTerms) =>
 
 export const endTerms = (id: string) =>
   answer(client.DELETE('/api/v1/firms/{id}/terms', { params: { path: { id } } }));
+
+export const findTeams = (id: string) =>
+  answer(client.GET('/api/v1/firms/{id}/teams', { params: { path: { id } } }));
+
+export const setTeams = (id: string, body: FirmTeams) =>
+  answer(client.PUT('/api/v1/firms/{id}/teams', { params: { path: { id } }, body }));

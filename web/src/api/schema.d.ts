@@ -449,6 +449,30 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/firms/{id}/teams": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * See a firm's teams
+         * @description As the firm states them: hours, days, licences and ports of each, and travel times.
+         */
+        get: operations["find_teams"];
+        /**
+         * State the teams of your firm
+         * @description Schedules of all your operators plan with them from then on. Accepted orders stay.
+         */
+        put: operations["set_teams"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/firms/{id}/terms": {
         parameters: {
             query?: never;
@@ -5913,6 +5937,79 @@ export interface components {
             /** @description `after` of the next page. */
             next: string | null;
         };
+        /** @description A team with hours, days, licences or ports of its own. */
+        FirmTeam: {
+            /**
+             * Format: double
+             * @description Hour at which its day begins, in the port's time; the firm's, if absent.
+             */
+            first_hour?: number | null;
+            /**
+             * Format: double
+             * @description Hour at which its day ends; the firm's, if absent.
+             */
+            last_hour?: number | null;
+            /** @description Licences that its adjuster holds; the firm's, if absent. */
+            licences?: string[] | null;
+            /** @description Name, unlike those of the firm's other teams. */
+            name: string;
+            /** @description Those of the firm's ports where it works, UN/LOCODE; all, if absent. */
+            ports?: string[] | null;
+            /** @description Working days of the week, as `Mon`; the firm's, if absent. */
+            working_days?: string[] | null;
+        };
+        /**
+         * @description Teams of a firm, and how long they travel.
+         * @example {
+         *       "teams": [
+         *         {
+         *           "first_hour": 7,
+         *           "last_hour": 15,
+         *           "name": "Jansen",
+         *           "ports": [
+         *             "NLRTM"
+         *           ]
+         *         },
+         *         {
+         *           "licences": [
+         *             "NL-114"
+         *           ],
+         *           "name": "Peeters",
+         *           "working_days": [
+         *             "Mon",
+         *             "Tue",
+         *             "Sat"
+         *           ]
+         *         }
+         *       ],
+         *       "travel_times": [
+         *         {
+         *           "from": "NLRTM",
+         *           "hours": 1.5,
+         *           "to": "BEANR"
+         *         }
+         *       ]
+         *     }
+         */
+        FirmTeams: {
+            /** @description Teams, each by its name; without any, operators plan with the number in their terms. */
+            teams?: components["schemas"]["FirmTeam"][];
+            /**
+             * @description Travel between two ports, either way, or between the berths of one, where the firm knows
+             *     better than the distance.
+             */
+            travel_times?: components["schemas"]["TravelTime"][];
+        };
+        /** @description Teams as they were stated last. */
+        FirmTeamsStated: {
+            changed_at: components["schemas"]["Time"] | null;
+            /** @description Its author. */
+            changed_by: string | null;
+            /** @description Teams, each by its name; empty if the firm states none. */
+            teams: components["schemas"]["FirmTeam"][];
+            /** @description Travel between two ports or two berths, where the firm knows better than the distance. */
+            travel_times: components["schemas"]["TravelTime"][];
+        };
         /**
          * @description Terms of a firm.
          * @example {
@@ -5975,7 +6072,7 @@ export interface components {
             flags?: string[];
             /**
              * Format: int32
-             * @description Jobs of a team on one day in one port; 1 by default.
+             * @description Most jobs of a team on one day; 1 by default.
              */
             jobs_a_team_day?: number;
             /**
@@ -5994,7 +6091,7 @@ export interface components {
             ports?: components["schemas"]["ServedPort"][];
             /**
              * Format: int32
-             * @description Teams for you on a working day; 1 by default.
+             * @description Teams for you on a working day, if the firm does not state its own; 1 by default.
              */
             teams?: number;
             /** @description Working days of the week, as `Mon`; Monday to Friday by default. */
@@ -6018,6 +6115,11 @@ export interface components {
              *     ]
              */
             problems: string[];
+            /**
+             * @description Teams as the firm states them, which take the place of the number in the terms; empty if
+             *     it states none.
+             */
+            teams: components["schemas"]["FirmTeam"][];
             terms: components["schemas"]["FirmTerms"] | null;
         };
         /** @description An operator's vessels. */
@@ -7194,6 +7296,7 @@ export interface components {
          *       "compass_id": "0199aa00-0000-7000-8000-000000000002",
          *       "day": "2026-12-09",
          *       "firm_id": "0199aa00-0000-7000-8000-000000000003",
+         *       "from": "2026-12-09T08:00:00Z",
          *       "note": "agreed by telephone"
          *     }
          */
@@ -7209,6 +7312,7 @@ export interface components {
             day: string;
             /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
+            from?: components["schemas"]["Time"] | null;
             /** @description Note, such as the reason. */
             note?: string | null;
         };
@@ -7257,7 +7361,8 @@ export interface components {
          * @example {
          *       "answer_within_hours": 24,
          *       "terms": {
-         *         "planned_at": "2026-12-10T08:00:00Z"
+         *         "planned_at": "2026-12-10T08:00:00Z",
+         *         "planned_until": "2026-12-10T11:00:00Z"
          *       },
          *       "text": "She is two days late."
          *     }
@@ -7388,6 +7493,7 @@ export interface components {
          *       "compass_id": "0199aa00-0000-7000-8000-000000000002",
          *       "firm": "Nervión Compass",
          *       "planned_at": "2026-11-22T08:00:00Z",
+         *       "planned_until": "2026-11-22T11:00:00Z",
          *       "port": "Bilbao",
          *       "vessel_id": "0199aa00-0000-7000-8000-000000000001"
          *     }
@@ -7407,6 +7513,7 @@ export interface components {
             offer?: components["schemas"]["NewOffer"] | null;
             /** @description Time of the job. */
             planned_at: components["schemas"]["Time"];
+            planned_until?: components["schemas"]["Time"] | null;
             /** @description The port. */
             port: string;
             /** @description The vessel. */
@@ -7570,7 +7677,8 @@ export interface components {
          * @example {
          *       "terms": {
          *         "fee_eur": 900,
-         *         "planned_at": "2026-11-22T13:00:00Z"
+         *         "planned_at": "2026-11-22T13:00:00Z",
+         *         "planned_until": "2026-11-22T16:00:00Z"
          *       },
          *       "text": "Our team is at Santander until noon."
          *     }
@@ -7810,6 +7918,7 @@ export interface components {
             day: string;
             /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
+            from: components["schemas"]["Time"] | null;
             /** @description Note, such as the reason. */
             note: string | null;
             /** @description The vessel. */
@@ -7959,7 +8068,7 @@ export interface components {
              */
             trays_in_use: number[];
         };
-        /** @description Place and day of a job, with its price. */
+        /** @description Place and time of a job, with its price. */
         PlanPlace: {
             /** @description The port call. */
             call_id: components["schemas"]["CallId"];
@@ -7972,6 +8081,7 @@ export interface components {
             firm_id: components["schemas"]["FirmId"];
             /** @description Name of the firm. */
             firm_name: string;
+            from: components["schemas"]["Time"] | null;
             /**
              * Format: double
              * @description Fee and travel, euros; `null` when no plan had this job.
@@ -8069,8 +8179,13 @@ export interface components {
             firm_id: components["schemas"]["FirmId"];
             /** @description Name of the firm. */
             firm_name: string;
-            /** @description Start of the window in which the vessel is alongside and the firm works. */
+            /** @description Beginning of the job on board. */
             from: components["schemas"]["Time"];
+            /**
+             * @description Beginning in the port's legal time.
+             * @example 2026-12-08T08:00:00+01:00
+             */
+            from_local?: string;
             /**
              * @description Orders under way with another firm, call or day: to be cancelled, or moved by agreement,
              *     before the job can be offered. Offering it cancels those that every firm declined.
@@ -8096,8 +8211,18 @@ export interface components {
             reason: string;
             /** @description State of the job. */
             state: components["schemas"]["PlannedJobState"];
-            /** @description End of that window. */
+            /**
+             * @description Team of the firm: its name, or a number from 1 where its teams are alike; empty in a plan of
+             *     an older release, whose `from` and `to` bound the day's hours.
+             */
+            team?: string;
+            /** @description Its end. */
             to: components["schemas"]["Time"];
+            /**
+             * @description End in the port's legal time.
+             * @example 2026-12-08T11:00:00+01:00
+             */
+            to_local?: string;
             /**
              * Format: double
              * @description Share of the team's travel, euros.
@@ -8588,6 +8713,7 @@ export interface components {
              */
             fee_eur?: number | null;
             planned_at?: components["schemas"]["Time"] | null;
+            planned_until?: components["schemas"]["Time"] | null;
         };
         /**
          * @description Code of a second factor.
@@ -10096,6 +10222,24 @@ export interface components {
          * @enum {string}
          */
         Trade: "bulk" | "container" | "tanker" | "general_cargo" | "ro_ro" | "passenger" | "fishing" | "offshore" | "other";
+        /** @description Hours between two ports, either way; between berths where they are one. */
+        TravelTime: {
+            /**
+             * @description A port of the firm, UN/LOCODE.
+             * @example NLRTM
+             */
+            from: string;
+            /**
+             * Format: double
+             * @description Hours from one job's end to the next one's beginning.
+             */
+            hours: number;
+            /**
+             * @description Another, or the same.
+             * @example BEANR
+             */
+            to: string;
+        };
         /** @description Need that could not be scheduled, or only late. */
         UnscheduledNeed: {
             /** @description Reasons why it could not be scheduled in time. */
@@ -10549,6 +10693,8 @@ export interface components {
             new_terms: components["schemas"]["WorkOrderTerms"] | null;
             /** @description Present state. */
             state: components["schemas"]["OfferState"];
+            /** @description Team of the firm that is to come; `null` if its teams have no names. */
+            team: string | null;
             terms: components["schemas"]["WorkOrderTerms"] | null;
             /** @description Last text. */
             text: string | null;
@@ -10572,6 +10718,11 @@ export interface components {
             adjuster_licence: string | null;
             /** @description Name of the adjuster. */
             adjuster_name: string | null;
+            /**
+             * @description Time of the job as the port's clocks would have shown it when it was agreed; `null` unless
+             *     its legal time has changed since. The job stays at its instant.
+             */
+            agreed_at_local: string | null;
             answer_by: components["schemas"]["Time"] | null;
             /** @description The berth. */
             berth: string | null;
@@ -10605,6 +10756,18 @@ export interface components {
             operator_name: string;
             /** @description Time of the job. */
             planned_at: components["schemas"]["Time"];
+            /**
+             * @description Time of the job in the port's legal time; `null` if the port is unknown.
+             * @example 2026-12-08T08:00:00+01:00
+             */
+            planned_at_local: string | null;
+            /** @description End of the job. */
+            planned_until: components["schemas"]["Time"];
+            /**
+             * @description End of the job in the port's legal time.
+             * @example 2026-12-08T11:00:00+01:00
+             */
+            planned_until_local: string | null;
             /** @description The port. */
             port: string;
             /** @description Present state. */
@@ -10619,7 +10782,8 @@ export interface components {
          * @example {
          *       "berth": "A7",
          *       "fee_eur": 900,
-         *       "planned_at": "2026-11-22T13:00:00Z"
+         *       "planned_at": "2026-11-22T13:00:00Z",
+         *       "planned_until": "2026-11-22T16:00:00Z"
          *     }
          */
         WorkOrderTerms: {
@@ -10632,6 +10796,7 @@ export interface components {
             fee_eur?: number | null;
             /** @description Time of the job. */
             planned_at: components["schemas"]["Time"];
+            planned_until?: components["schemas"]["Time"] | null;
         };
         /** @description The heading with the greatest deviation. */
         WorstHeading: {
@@ -13100,6 +13265,171 @@ export interface operations {
             };
             /** @description Internal Server Error */
             500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_teams: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["FirmId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FirmTeamsStated"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_teams: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["FirmId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["FirmTeams"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FirmTeamsStated"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when it is not your firm */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import type { FirmTerms, FirmWithTerms } from '../api/types';
+import type { FirmTeam, FirmTerms, FirmWithTerms } from '../api/types';
 import { candidates, type Job } from './serving';
 
 const now = new Date('2026-12-01T00:00:00Z');
@@ -7,6 +7,7 @@ const now = new Date('2026-12-01T00:00:00Z');
 const job: Job = {
   port: 'NLRTM',
   at: '2026-12-08T10:00:00Z',
+  hours: 3,
   zone: 0,
   flag: 'PA',
   licence: null,
@@ -16,6 +17,7 @@ const firm = (name: string, terms: Partial<FirmTerms> | null, problems: string[]
     firm_id: name,
     firm_name: name,
     terms: terms && { fee_eur: 1800, ports: [{ port: 'NLRTM', travel_eur: 100 }], ...terms },
+    teams: [],
     problems,
   }) as FirmWithTerms;
 const against = (terms: Partial<FirmTerms> | null, asked: Partial<Job> = {}) =>
@@ -58,6 +60,21 @@ describe('firms for a job', () => {
     expect(against({}, { at: '2026-12-04T20:00:00Z', zone: 12 })).toEqual([
       'Does not work on a Saturday.',
     ]);
+  });
+
+  test('end their work in time', () => {
+    expect(against({ last_hour: 13 })).toEqual([]);
+    expect(against({ last_hour: 12.5 })).toEqual(['Works from 08:00 to 12:30 the port’s time.']);
+  });
+
+  test('can do it if one of their teams can', () => {
+    const late = { name: 'late', first_hour: 12 };
+    const elsewhere = { name: 'elsewhere', ports: ['BEANR'] };
+    const able = (teams: FirmTeam[]) =>
+      candidates([{ ...firm('one', {}), teams }], job, now).others[0]?.against ?? [];
+    expect(able([late])).toEqual(['Works from 12:00 to 18:00 the port’s time.']);
+    expect(able([elsewhere])).toEqual(['Does not serve this port.']);
+    expect(able([late, elsewhere, { name: 'any' }])).toEqual([]);
   });
 
   test('are not judged by hours and days where the port’s time is not known', () => {

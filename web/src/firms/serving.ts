@@ -1,8 +1,8 @@
 /** Which firms can do a job, and what speaks against the others. Pure functions. */
 
-import type { FirmTerms, FirmWithTerms } from '../api/types';
+import type { FirmTeam, FirmTerms, FirmWithTerms } from '../api/types';
 import { shownAt, type Zone } from '../zone';
-import { weekdays } from './terms';
+import { clock, weekdays } from './terms';
 import * as text from '../text';
 
 /** A job as firms are asked for it; what is not known counts against nobody. */
@@ -10,6 +10,8 @@ export interface Job {
   /** UN/LOCODE. */
   port: string | undefined;
   at: string | null;
+  /** How long it takes. */
+  hours: number;
   /** The port's time; nothing where it is not known. */
   zone: Zone | undefined;
   /** ISO 3166. */
@@ -47,7 +49,28 @@ function candidate(firm: FirmWithTerms, job: Job, now: Date): Candidate {
   if (!terms) return { id, name, fee: null, against: [text.newOrder.against.noTerms] };
   const served = terms.ports?.find(({ port }) => port === job.port);
   const fee = terms.fee_eur + (served?.travel_eur ?? 0);
-  return { id, name, fee, against: [...problems, ...against(terms, job, now)] };
+  return { id, name, fee, against: [...problems, ...leastAgainst(firm, terms, job, now)] };
+}
+
+/** What speaks against the team that suits best; all are alike where the firm states none. */
+function leastAgainst(firm: FirmWithTerms, terms: FirmTerms, job: Job, now: Date): string[] {
+  const teams = firm.teams.length > 0 ? firm.teams.map((team) => ofTeam(terms, team)) : [terms];
+  const found = teams.map((one) => against(one, job, now));
+  return found.sort((a, b) => a.length - b.length)[0] ?? [];
+}
+
+/** The firm's terms with what a team states of itself. */
+function ofTeam(terms: FirmTerms, team: FirmTeam): FirmTerms {
+  const { first_hour, last_hour, working_days, licences, ports } = team;
+  const served = terms.ports?.filter(({ port }) => !ports || ports.includes(port)) ?? [];
+  return {
+    ...terms,
+    ports: served,
+    ...(typeof first_hour === 'number' ? { first_hour } : {}),
+    ...(typeof last_hour === 'number' ? { last_hour } : {}),
+    ...(working_days ? { working_days } : {}),
+    ...(licences ? { licences } : {}),
+  };
 }
 
 function against(terms: FirmTerms, job: Job, now: Date): string[] {
@@ -58,28 +81,23 @@ function against(terms: FirmTerms, job: Job, now: Date): string[] {
   if (job.flag !== null && flags?.length && !flags.includes(job.flag)) found.push(t.flag(job.flag));
   if (job.licence !== null && !licences?.includes(job.licence)) found.push(t.licence(job.licence));
   if (job.at === null) return found;
-  if (job.zone !== undefined) found.push(...againstHours(terms, job.at, job.zone));
+  if (job.zone !== undefined) found.push(...againstHours(terms, job, job.at, job.zone));
   const lead = terms.lead_time_h ?? 0;
   if (Date.parse(job.at) - now.getTime() < lead * hourMs) found.push(t.lead(lead));
   return found;
 }
 
-function againstHours(terms: FirmTerms, at: string, zone: Zone): string[] {
+function againstHours(terms: FirmTerms, job: Job, at: string, zone: Zone): string[] {
   const t = text.newOrder.against;
   const there = shownAt(Date.parse(at), zone);
   const day = weekdays[(there.getUTCDay() + 6) % 7] ?? 'Mon';
   const hour = there.getUTCHours() + there.getUTCMinutes() / 60;
+  const ends = hour + job.hours;
   const [first, last] = [terms.first_hour ?? 8, terms.last_hour ?? 18];
   const working = terms.working_days ?? weekdays.slice(0, 5);
   const found: string[] = [];
   if (!working.includes(day)) found.push(t.day(text.firms.day[day] ?? day));
   if (terms.closed?.includes(there.toISOString().slice(0, 10))) found.push(t.closed);
-  if (hour < first || hour >= last) found.push(t.hours(clock(first), clock(last)));
+  if (hour < first || ends > last) found.push(t.hours(clock(first), clock(last)));
   return found;
-}
-
-function clock(hour: number): string {
-  const minutes = Math.round(hour * 60);
-  const two = (n: number) => String(n).padStart(2, '0');
-  return `${two(Math.floor(minutes / 60))}:${two(minutes % 60)}`;
 }

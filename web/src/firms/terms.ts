@@ -71,8 +71,15 @@ export function readTerms(written: Written): FirmTerms | Wrong {
 
 const isNumber = (text: string): boolean => text.trim() !== '' && Number(text) >= 0;
 
-const list = (text: string): string[] =>
+export const list = (text: string): string[] =>
   text
     .split(/[,;\n]/)
     .map((part) => part.trim())
     .filter((part) => part !== '');
+
+/** An hour of the day as clocks show it: `07:30`. */
+export function clock(hour: number): string {
+  const minutes = Math.round(hour * 60);
+  const two = (n: number) => String(n).padStart(2, '0');
+  return `${two(Math.floor(minutes / 60))}:${two(minutes % 60)}`;
+}

@@ -314,6 +314,9 @@ test('a fee is typed with a comma or a point, and told with its cents', () => {
   expect(feeInWords(null)).toBe('');
   const terms = { planned_at: '2026-12-08T13:00:00Z', berth: 'A7', fee_eur: 900 };
   expect(termsInWords(terms)).toBe('8 Dec 2026, 13:00 UTC, A7, € 900');
+  expect(termsInWords({ ...terms, planned_until: '2026-12-08T17:30:00Z' })).toBe(
+    '8 Dec 2026, 13:00 to 17:30 UTC, A7, € 900',
+  );
 });
 
 test('a call that moved asks for something only while the order is under way', () => {

@@ -1,7 +1,7 @@
 /** Terms of an order as they are typed and told. Pure. */
 
 import type { WorkOrderTerms } from '../api/types';
-import { count, time } from '../format';
+import { count, hoursAtSea } from '../format';
 import * as text from '../text';
 
 const mostEuros = 1_000_000;
@@ -23,9 +23,13 @@ export function feeInWords(euros: number | null | undefined): string {
   return text.offers.terms.euros(`${count(Math.floor(cents / 100))}${rest}`);
 }
 
-/** Time, berth and fee in a line, in UTC as a log has it. */
+/** Hours, berth and fee in a line, in UTC as a log has it. */
 export function termsInWords(terms: WorkOrderTerms): string {
-  return [time(terms.planned_at), terms.berth, feeInWords(terms.fee_eur)]
+  return [
+    hoursAtSea(terms.planned_at, terms.planned_until, undefined, 'utc'),
+    terms.berth,
+    feeInWords(terms.fee_eur),
+  ]
     .filter((part) => part)
     .join(', ');
 }

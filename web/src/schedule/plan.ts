@@ -114,12 +114,13 @@ export function realChanges(before: SchedulePlan | null, plan: SchedulePlan): Pl
 }
 
 const samePlace = (a: PlannedJob, b: PlannedJob): boolean =>
-  a.call_id === b.call_id && a.day === b.day && a.firm_id === b.firm_id;
+  a.call_id === b.call_id && a.from === b.from && a.firm_id === b.firm_id;
 
 function movedBy(was: PlannedJob, job: PlannedJob): PlanChange {
   const place = (at: PlannedJob) => ({
     call_id: at.call_id,
     day: at.day,
+    from: at.from,
     firm_id: at.firm_id,
     firm_name: at.firm_name,
     port_name: at.port_name,

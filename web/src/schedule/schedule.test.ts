@@ -154,6 +154,7 @@ describe('what changed', () => {
       call_id: 'c',
       firm_id: 'f',
       day,
+      from: `${day}T08:00:00Z`,
       pinned,
     }) as PlannedJob;
   const change = (compass: string, what: string) =>

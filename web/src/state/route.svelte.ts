@@ -20,6 +20,7 @@ const ofSettings = {
   schedule: 'schedule-rules',
   audit: 'audit',
   keys: 'signing-keys',
+  teams: 'firm-teams',
 } as const;
 
 export type Route =

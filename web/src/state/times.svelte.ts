@@ -3,7 +3,7 @@
  * the nautical zone of her longitude at sea, and the port's legal time in port.
  */
 
-import { atSea, zoneOf, type Clocks } from '../format';
+import { atSea, hoursAtSea, zoneOf, type Clocks } from '../format';
 import type { Where } from '../whereabouts';
 import type { Zone } from '../zone';
 import { ports } from './ports.svelte';
@@ -27,6 +27,13 @@ class TimesState {
   /** An instant as the reader wants it; in UTC alone as long as the port's zone is not known. */
   at = (value: string | Date | null | undefined, where: Where): string =>
     atSea(value, this.#zoneAt(where), this.clocks);
+
+  /** Hours as the reader wants them. */
+  hours = (
+    from: string | null | undefined,
+    until: string | null | undefined,
+    where: Where,
+  ): string => hoursAtSea(from, until, this.#zoneAt(where), this.clocks);
 
   /** The day alone, by the first of those clocks. */
   day = (value: string | Date, where: Where): string => this.at(value, where).replace(/,.*/, '');

@@ -15,6 +15,7 @@ const deeds: Record<string, string> = {
   'DELETE /calendar-feeds/{id}': 'Removed a calendar',
   'POST /firms': 'Entered a firm',
   'POST /firms/{id}/keys': 'Registered a firm’s key',
+  'PUT /firms/{id}/teams': 'Stated a firm’s teams',
   'DELETE /firms/{id}/keys/{key}': 'Revoked a firm’s key',
   'PUT /firms/{id}/terms': 'Set a firm’s terms',
   'DELETE /firms/{id}/terms': 'Removed a firm’s terms',

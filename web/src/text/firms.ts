@@ -16,6 +16,7 @@ export const firms = {
   teams: 'Teams',
   teamsOf: (teams: number, jobs: number) =>
     `${teams} on a working day, ${jobs} ${jobs === 1 ? 'job' : 'jobs'} each`,
+  stated: 'as the firm states them',
   hours: 'Works',
   hoursOf: (days: string, from: string, to: string) => `${days}, ${from} to ${to}, the port’s time`,
   noDays: 'no days',
@@ -62,6 +63,45 @@ export const firms = {
     Sat: 'Saturday',
     Sun: 'Sunday',
   } as Record<string, string>,
+};
+
+/** A firm's own page of its teams. */
+export const teams = {
+  title: 'Teams',
+  lead: 'Who of your firm works when and where. All operators that you work for plan with them, and no team is booked twice. Without any, each operator plans with the number in its terms.',
+  none: 'Your firm states no teams: operators plan with the number in their terms.',
+  change: 'Change the teams',
+  state: 'State the teams',
+  stated: (when: string, who: string) => `Stated ${when} by ${who}`,
+  travel: 'Travel times',
+  way: (from: string, to: string, hours: number) =>
+    from === to ? `${hours} h between berths of ${from}` : `${hours} h between ${from} and ${to}`,
+  byDistance:
+    'By distance: half an hour between berths, the quicker of road and air between ports.',
+  from: (hour: string) => `from ${hour}`,
+  until: (hour: string) => `until ${hour}`,
+  licences: (names: string) => `licences ${names}`,
+  ports: (codes: string) => `at ${codes}`,
+  asTerms: 'as in the operators’ terms',
+  notYours: 'Only adjusters of a firm state its teams.',
+  saved: 'The teams are stated. Schedules follow within a minute.',
+  form: {
+    team: (n: number) => `Team ${n}`,
+    name: 'Name',
+    first: 'Begins at, the port’s time (empty: as in terms)',
+    last: 'Ends at (empty: as in terms)',
+    days: 'Working days (none: as in terms)',
+    ports: 'Ports, UN/LOCODE (empty: all)',
+    licences: 'Licences (empty: as in terms)',
+    add: 'Add a team',
+    remove: (name: string) => `Remove ${name}`,
+    travel: 'Travel, one way a line: two ports and the hours',
+    travelHint: 'NLRTM BEANR 1.5',
+    submit: 'Save the teams',
+    busy: 'Saving…',
+    fieldWrong: (team: number, field: string) => `Team ${team}: “${field}” is missing or wrong.`,
+    lineWrong: (line: number) => `Line ${line} of the travel is not two UN/LOCODEs and hours.`,
+  },
 };
 
 export const home = {

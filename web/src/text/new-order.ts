@@ -15,6 +15,8 @@ export const newOrder = {
     'Not chosen from the list: it is ordered as it is written, and which firms serve it is not known.',
   berth: 'Berth',
   planned: 'When',
+  long: 'Hours it takes',
+  longWrong: 'Say how many hours it takes, 24 at most.',
   there: (when: string) => `There: ${when}`,
   before: 'That is before she is expected alongside.',
   after: 'That is after she is expected to leave.',

@@ -27,6 +27,7 @@ export const offers = {
     fee: 'Fee',
     euros: (fee: string) => `€ ${fee}`,
     offered: (fee: string) => `Offered at ${fee}, travel not counted`,
+    team: (name: string) => `Team ${name}`,
   },
 
   call: {
@@ -53,7 +54,6 @@ export const offers = {
 
   retime: {
     ask: 'Ask for another time…',
-    when: 'When instead',
     submit: 'Ask the firm',
     asked: 'Another time is asked for',
     stands: 'What was agreed stands until the firm agrees.',
@@ -85,8 +85,10 @@ export const offers = {
   adjusterMissing: 'Say who will come.',
   propose: 'Propose other terms…',
   proposeSubmit: 'Propose it',
-  planned: 'When instead',
-  plannedMissing: 'Say when, as a day and an hour in UTC.',
+  planned: 'From when instead',
+  until: 'Until',
+  portTime: 'port’s time',
+  hoursMissing: 'Say from when to when: the end within 24 hours after the beginning.',
   berth: 'Berth, if another',
   fee: 'Fee in euros',
   feeWrong: 'A fee is a figure, 0 to 1 000 000.',

@@ -83,6 +83,8 @@ export const order = {
     steps: 'Steps',
     stepsDone: (done: number, of: number) => `${done} of ${of}`,
     where: 'Where and when',
+    clocksChanged: (hour: string) =>
+      `The port’s legal time has changed since: ${hour} was agreed. The job stays at its instant in UTC.`,
     who: 'Adjuster',
     sea: 'At sea',
     seaNone: 'nothing yet',

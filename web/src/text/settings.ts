@@ -9,6 +9,7 @@ export const settings = {
     'schedule-rules': 'Schedule rules',
     audit: 'Audit log',
     'signing-keys': 'Signing keys',
+    'firm-teams': 'Teams',
   },
   mail: 'Mail',
   webhooks: 'Webhooks',
