@@ -1,5 +1,7 @@
 //! Jobs at fixed hours and the teams that do them.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 use binnacle_schedule::bookings::{Booking, assign_teams};
 use binnacle_schedule::input::Firm;
 use binnacle_schedule::time::Instant;
@@ -7,7 +9,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-fn firm(teams: Value) -> Firm {
+fn firm(teams: &Value) -> Firm {
     let firm = json!({
         "id": "f", "fee_eur": 1500, "jobs_a_team_day": 3, "teams": teams,
         "ports": [{"port": "NLRTM"}, {"port": "BEANR"}, {"port": "DEHAM"}],
@@ -30,7 +32,7 @@ fn booking(place: &str, from_h: f64, to_h: f64) -> Booking {
 
 #[test]
 fn one_team_does_one_job_after_the_other_with_its_way() {
-    let one = firm(json!(1));
+    let one = firm(&json!(1));
     let after = |place, from_h| {
         let jobs = [booking("NLRTM", 8.0, 11.0), booking(place, from_h, 16.0)];
         assign_teams(&one, &jobs).is_some()
@@ -47,24 +49,24 @@ fn one_team_does_one_job_after_the_other_with_its_way() {
 #[test]
 fn two_teams_do_two_jobs_at_a_time() {
     let jobs = [booking("NLRTM", 8.0, 11.0), booking("BEANR", 8.0, 11.0)];
-    let teams = assign_teams(&firm(json!(2)), &jobs).unwrap();
+    let teams = assign_teams(&firm(&json!(2)), &jobs).unwrap();
     assert_ne!(teams[0], teams[1]);
-    assert_eq!(assign_teams(&firm(json!(0)), &jobs[..1]), None);
+    assert_eq!(assign_teams(&firm(&json!(0)), &jobs[..1]), None);
 }
 
 #[test]
 fn a_team_does_no_more_jobs_a_day_than_it_may() {
     let hours = [8.0, 9.0, 10.0, 11.0];
     let mut jobs = hours.map(|from_h| booking("NLRTM", from_h, from_h + 0.5));
-    assert!(assign_teams(&firm(json!(1)), &jobs[..3]).is_some());
-    assert_eq!(assign_teams(&firm(json!(1)), &jobs), None);
+    assert!(assign_teams(&firm(&json!(1)), &jobs[..3]).is_some());
+    assert_eq!(assign_teams(&firm(&json!(1)), &jobs), None);
     jobs[3].day = "2026-12-16".parse().unwrap();
-    assert!(assign_teams(&firm(json!(1)), &jobs).is_some());
+    assert!(assign_teams(&firm(&json!(1)), &jobs).is_some());
 }
 
 #[test]
 fn a_named_team_keeps_its_own_jobs() {
-    let two = firm(json!([{"name": "Jansen"}, {"name": "Peeters"}]));
+    let two = firm(&json!([{"name": "Jansen"}, {"name": "Peeters"}]));
     let mut jobs = [booking("NLRTM", 8.0, 11.0), booking("NLRTM", 9.0, 12.0)];
     jobs[1].team = Some("Jansen".to_owned());
     assert_eq!(assign_teams(&two, &jobs), Some(vec![1, 0]));
@@ -106,7 +108,7 @@ proptest! {
                 booking(["NLRTM", "BEANR", "DEHAM"][place], from_h, from_h + long_h)
             })
             .collect();
-        let firm = firm(json!(teams));
+        let firm = firm(&json!(teams));
         let found = assign_teams(&firm, &jobs);
         prop_assert_eq!(found.is_some(), any_way_works(&firm, &jobs, teams));
     }

@@ -125,7 +125,7 @@ pub async fn require_capacity(
     let Some(capacity) = Capacity::new(&all_terms, visit.operator, &stated) else {
         return Ok(None);
     };
-    let candidates = candidates(tx, firm_name, &capacity, visit, requester).await?;
+    let mut candidates = candidates(tx, firm_name, &capacity, visit, requester).await?;
     let between = [
         Time(visit.from.0.plus_seconds(-AROUND_H * 3600.0)),
         Time(visit.until.0.plus_seconds(AROUND_H * 3600.0)),
@@ -140,6 +140,10 @@ pub async fn require_capacity(
         let that_day = day(visit.port, visit.from);
         others.retain(|one| one.day() == that_day);
     }
+    // The team that comes for another compass of the vessel does this one too.
+    let beside = others.iter().find(|one| one.is_beside(visit));
+    let expected = beside.map_or(visit.team, |one| one.team.as_deref());
+    candidates.sort_by_key(|team| team.as_deref() != expected);
     for team in candidates {
         let new = StoredBooking::new(visit, team.clone());
         let orders: Vec<&StoredBooking> = others.iter().copied().chain([&new]).collect();
@@ -152,7 +156,7 @@ pub async fn require_capacity(
     )))
 }
 
-/// Returns the teams that may do a visit, the expected one first.
+/// Returns the teams that may do a visit.
 ///
 /// # Errors
 /// [`Error::WrongState`] when none may, by the operator's terms and the firm's statement. Terms
@@ -199,7 +203,6 @@ async fn candidates(
             teams.push(None);
         }
     }
-    teams.sort_by_key(|team| team.as_deref() != visit.team);
     Ok(teams)
 }
 

@@ -28,7 +28,7 @@ pub struct StoredBooking {
     pub(super) port: String,
     planned_at: Time,
     planned_until: Time,
-    team: Option<String>,
+    pub(super) team: Option<String>,
     /// True if the firm has it, false if it has an offer only.
     pub is_taken: bool,
 }
@@ -118,6 +118,14 @@ impl StoredBooking {
     /// Day in the port's time.
     pub(super) fn day(&self) -> NaiveDate {
         day(&self.port, self.planned_at)
+    }
+
+    /// Returns whether one team does this order and a visit at once, on board one vessel.
+    pub(super) fn is_beside(&self, visit: &Visit<'_>) -> bool {
+        self.vessel_id == visit.vessel
+            && place(&self.port) == place(visit.port)
+            && self.planned_at < visit.until
+            && visit.from < self.planned_until
     }
 
     /// Booking of a team.
