@@ -217,7 +217,7 @@ pub(super) fn join(mut firm: input::Firm, stated: &StatedTeams) -> input::Firm {
         firm.teams = Teams::Named(teams);
     }
     let served: BTreeSet<PortCode> = firm.ports.iter().map(|served| served.port).collect();
-    firm.travel_times = stated.travel_times.clone();
+    firm.travel_times.clone_from(&stated.travel_times);
     let known = |time: &TravelTime| served.contains(&time.from) && served.contains(&time.to);
     firm.travel_times.retain(known);
     firm
