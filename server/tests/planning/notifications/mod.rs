@@ -60,7 +60,7 @@ async fn an_offer_and_its_responses_notify_the_other_side(server: TestServer) {
     for part in [
         "Vessel:    Nao",
         "Port:      Bilbao, berth A5",
-        "Planned:   2026-11-22 08:00 UTC",
+        "Planned:   2026-11-22 09:00 to 12:00, port's time (UTC+01:00)",
         "Operator:  ada",
         "Answer by: 2026-11-21 08:00 UTC",
         &format!("https://binnacle.example/work-orders/{}", parties.order),
@@ -82,8 +82,8 @@ async fn an_offer_and_its_responses_notify_the_other_side(server: TestServer) {
     let listed = parties.ada.get("/notifications?kind=answered").await.good();
     let newest = &listed["items"][0];
     assert_eq!(newest["order_id"], parties.order.as_str());
-    let terms_text =
-        "juan@adjusters.example: 2026-11-22 13:00 UTC, berth A7, for 900.50 euros. At noon.";
+    let terms_text = "juan@adjusters.example: 2026-11-22 14:00 to 17:00, port's time (UTC+01:00), berth A7, for \
+         900.50 euros. At noon.";
     assert!(
         newest["text"].as_str().unwrap().contains(terms_text),
         "{newest}"
