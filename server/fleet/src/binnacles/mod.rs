@@ -132,6 +132,7 @@ async fn find_current(
     responses((status = 200, body = BinnacleRevision, headers(("ETag" = String, description = "Version of what can be edited"))), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem)))]
+#[allow(clippy::too_many_arguments, reason = "each is a part of the request")]
 async fn put_binnacle(
     State(app): State<App>,
     request: RequestContext,

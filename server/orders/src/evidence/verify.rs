@@ -8,7 +8,6 @@ use crate::work_orders::log::canonical_json::sha256_hex;
 use crate::work_orders::payload::photograph::Photo;
 use crate::work_orders::payload::signed_record::{Completion, RecordedSignature};
 use binnacle_platform::signing_keys::PublishedKey;
-use binnacle_platform::time::Time;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -148,25 +147,9 @@ fn check_log(
     for line in text.lines() {
         entries += 1;
         let at = format!("entries.ndjson, line {entries}");
-        let Ok(entry) = serde_json::from_str::<Value>(line) else {
-            found.wrong(format!("{at} is not JSON"));
-            let sha256 = sha256_hex(line.as_bytes());
-            previous = Some(sha256.clone());
-            lines.push(ReadLine {
-                sha256,
-                at: None,
-                is_withheld: false,
-            });
-            continue;
-        };
-        if entry["previous_sha256"].as_str() != previous.as_deref() {
-            found.wrong(format!("{at} does not follow the line before it"));
-        }
-        if entry["seq"] != entries {
-            found.wrong(format!("{at} is not the entry of that number"));
-        }
-        if entry["order"] != manifest.order.as_str() {
-            found.wrong(format!("{at} is of another order"));
+        let (entry, read) = read_line(line, &at, found);
+        if !entry.is_null() {
+            check_place(&entry, entries, previous.as_deref(), manifest, &at, found);
         }
         match entry["kind"].as_str() {
             Some("completion") => {
@@ -184,19 +167,11 @@ fn check_log(
             }
             _ => {}
         }
-        let sha256 = match entry["withheld_sha256"].as_str() {
-            Some(sha256) => {
-                withheld.push(entries.to_string());
-                sha256.to_owned()
-            }
-            None => sha256_hex(line.as_bytes()),
-        };
-        previous = Some(sha256.clone());
-        lines.push(ReadLine {
-            sha256,
-            at: serde_json::from_value::<Time>(entry["at"].clone()).ok(),
-            is_withheld: !entry["withheld_sha256"].is_null(),
-        });
+        if read.is_withheld {
+            withheld.push(entries.to_string());
+        }
+        previous = Some(read.sha256.clone());
+        lines.push(read);
         if let Some(head) = recorded.as_ref().filter(|head| head.entries == entries)
             && previous.as_ref() != Some(&head.last_sha256)
         {
@@ -238,6 +213,41 @@ fn check_log(
             .push("no firm's key has signed the record".to_owned());
     }
     lines
+}
+
+/// Reads a line of the log: the entry, null if it is not JSON, and what its seal is checked by.
+fn read_line(line: &str, at: &str, found: &mut Findings) -> (Value, ReadLine) {
+    let entry: Value = serde_json::from_str(line).unwrap_or_else(|_| {
+        found.wrong(format!("{at} is not JSON"));
+        Value::Null
+    });
+    let withheld = entry["withheld_sha256"].as_str();
+    let read = ReadLine {
+        sha256: withheld.map_or_else(|| sha256_hex(line.as_bytes()), str::to_owned),
+        at: serde_json::from_value(entry["at"].clone()).ok(),
+        is_withheld: withheld.is_some(),
+    };
+    (entry, read)
+}
+
+/// Checks that an entry is the next one of its order's log.
+fn check_place(
+    entry: &Value,
+    number: i64,
+    previous: Option<&str>,
+    manifest: &Manifest,
+    at: &str,
+    found: &mut Findings,
+) {
+    if entry["previous_sha256"].as_str() != previous {
+        found.wrong(format!("{at} does not follow the line before it"));
+    }
+    if entry["seq"] != number {
+        found.wrong(format!("{at} is not the entry of that number"));
+    }
+    if entry["order"] != manifest.order.as_str() {
+        found.wrong(format!("{at} is of another order"));
+    }
 }
 
 fn content<T: DeserializeOwned>(entry: &Value, at: &str, found: &mut Findings) -> Option<T> {

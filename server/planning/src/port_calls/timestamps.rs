@@ -166,7 +166,7 @@ async fn receive_timestamp(
     let named = |imo: &Option<String>| imo.as_deref() == Some(timestamp.vessel_imo_number.as_str());
     let vessel = fleet.iter().find(|vessel| named(&vessel.imo_number));
     let vessel_id = vessel.ok_or(Error::NotFound("vessel"))?.id;
-    let effect = apply(&app, &request, writer, vessel_id, timestamp).await?;
+    let effect = Box::pin(apply(&app, &request, writer, vessel_id, timestamp)).await?;
     Ok(Json(Received { vessel_id, effect }))
 }
 

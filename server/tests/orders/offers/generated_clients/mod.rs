@@ -58,6 +58,6 @@ async fn complete_with(server: &TestServer, program: &str) {
     let record = downloaded("record.json");
     assert_eq!(sha256_hex(&record), record_sha256.trim());
     assert!(downloaded("record.pdf").starts_with(b"%PDF-"));
-    let verified = evidence::verify(&downloaded("evidence.zip"));
+    let verified = evidence::verify(&downloaded("evidence.zip"), None);
     assert!(verified.problems.is_empty(), "{verified:?}");
 }
