@@ -4,7 +4,7 @@
 //! jobs, and does no more jobs on a day than it may. Working hours are no matter here:
 //! what is booked is agreed.
 
-use crate::input::{BERTH_H, Firm, travel_s, usual_hours};
+use crate::input::{BERTH_H, Firm, usual_hours};
 use crate::ports::PortCode;
 use crate::time::Instant;
 use chrono::NaiveDate;
@@ -46,7 +46,7 @@ struct LastJob {
 pub fn assign_teams(firm: &Firm, bookings: &[Booking]) -> Option<Vec<usize>> {
     let ways = Ways {
         firm,
-        travel_s: travel_s(firm),
+        travel_s: firm.travel_s(),
     };
     let mut team_of = vec![0; bookings.len()];
     for order in spells(bookings) {

@@ -1441,6 +1441,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/signing-keys": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List the server's signing keys
+         * @description Ed25519 public keys by which the server counter-signs the logs of work orders and their
+         *     evidence, with the time in which each signed. `binnacle-server verify-evidence --keys FILE`
+         *     reads this list.
+         */
+        get: operations["list_signing_keys"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/streams": {
         parameters: {
             query?: never;
@@ -5356,6 +5378,13 @@ export interface components {
             /** @description Names of the sizes with a pair on board. */
             quadrantal?: string[];
         };
+        /** @description Signature by a key of the server. */
+        CounterSignature: {
+            /** @description Ed25519 public key, 64 hexadecimal digits. */
+            key: string;
+            /** @description Signature, 128 hexadecimal digits. */
+            signature: string;
+        };
         /** @description Coverage of a compass's samples, with advice, and checks of the references and of the band. */
         Coverage: {
             /** @description Bands with samples, from south to north. */
@@ -8725,6 +8754,17 @@ export interface components {
             /** @description Code of the authenticator app, or a recovery code. */
             code: string;
         };
+        /** @description Public key of the server, with the time in which it signed. */
+        PublishedKey: {
+            /** @description Time since which it signs. */
+            created_at: components["schemas"]["Time"];
+            /**
+             * @description Ed25519 public key, 64 hexadecimal digits.
+             * @example 3d4017c3e843895a92b70aa74d1b7ebc9c982ccf2ec4968cc0cd55f12af4660c
+             */
+            public_key: string;
+            retired_at: components["schemas"]["Time"] | null;
+        };
         /** @description Quadrantal correctors: soft iron in pairs at the card's height. */
         QuadrantalBrackets: {
             /** @description Positions on the brackets' scale. */
@@ -10033,6 +10073,11 @@ export interface components {
              */
             second_factor_required: boolean;
         };
+        /** @description Public keys of the server, as it publishes them. */
+        SigningKeyList: {
+            /** @description The oldest first. */
+            items: components["schemas"]["PublishedKey"][];
+        };
         /** @description A step of permanent magnetism over λ, nT, with its standard errors. */
         Step: {
             /**
@@ -10590,6 +10635,7 @@ export interface components {
         WorkOrderEntry: {
             /** @description The entry: `kind`, `at`, `author`, `previous_sha256` and `content`. */
             entry: Record<string, never>;
+            seal: components["schemas"]["CounterSignature"] | null;
             /**
              * Format: int64
              * @description Number of the entry, from 1.
@@ -10651,6 +10697,8 @@ export interface components {
              * @description Number in the log.
              */
             seq: number;
+            /** @description Team of the firm that is to come, if its teams have names. */
+            team: string | null;
             terms: components["schemas"]["WorkOrderTerms"] | null;
             /** @description Text. */
             text: string | null;
@@ -10669,6 +10717,12 @@ export interface components {
             operator_name: string;
             /** @description Time of the job. */
             planned_at: components["schemas"]["Time"];
+            /** @description Time of the job in the port's legal time; `null` if the port is unknown. */
+            planned_at_local: string | null;
+            /** @description End of the job. */
+            planned_until: components["schemas"]["Time"];
+            /** @description End of the job in the port's legal time. */
+            planned_until_local: string | null;
             /** @description Port. */
             port: string;
             /** @description State. */
@@ -13339,6 +13393,24 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Service Unavailable */
             503: {
                 headers: {
@@ -13430,6 +13502,24 @@ export interface operations {
             };
             /** @description Unprocessable Entity */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -19033,6 +19123,26 @@ export interface operations {
                 };
                 content: {
                     "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_signing_keys: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SigningKeyList"];
                 };
             };
         };

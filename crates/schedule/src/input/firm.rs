@@ -1,6 +1,7 @@
 //! Adjuster firms.
 
-use super::{Teams, TravelTime};
+use super::Teams;
+use super::travel::{TravelTime, travel_s};
 use crate::ports::PortCode;
 use crate::rules::Flag;
 use crate::time::{Eur, Instant};
@@ -115,6 +116,12 @@ pub struct ServedPort {
 }
 
 impl Firm {
+    /// Returns the seconds between all of its ports, in their order.
+    pub(crate) fn travel_s(&self) -> Vec<Vec<i64>> {
+        let ports: Vec<PortCode> = self.ports.iter().map(|served| served.port).collect();
+        travel_s(&ports, &self.travel_times)
+    }
+
     /// Returns true on a working day.
     pub fn works(&self, day: NaiveDate) -> bool {
         self.working_days.contains(&day.weekday()) && !self.closed.contains(&day)

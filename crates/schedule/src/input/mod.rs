@@ -20,7 +20,7 @@ pub use firm::{Firm, ServedPort, Taken, TakenHours};
 pub use firm_check::{FirmError, check_firm};
 pub use read::read;
 pub use team::{Team, Teams};
-pub(crate) use travel::{BERTH_H, travel_s};
+pub(crate) use travel::BERTH_H;
 pub use travel::{TravelTime, usual_hours};
 pub use weights::{JOB_H, Weights};
 

@@ -1,6 +1,5 @@
 //! Hours that a team travels between ports, and between berths of one.
 
-use super::Firm;
 use crate::ports::{self, PortCode};
 use binnacle_compass::position::Position;
 use serde::{Deserialize, Serialize};
@@ -38,17 +37,16 @@ pub struct TravelTime {
     pub hours: f64,
 }
 
-/// Returns the seconds between all ports of a firm, in its order: its own times, and
+/// Returns the seconds between all of a firm's ports, in their order: its own times, and
 /// by distance where it gives none. A way by a third port is taken where it is
 /// shorter.
-pub(crate) fn travel_s(firm: &Firm) -> Vec<Vec<i64>> {
-    let ports: Vec<PortCode> = firm.ports.iter().map(|served| served.port).collect();
+pub(crate) fn travel_s(ports: &[PortCode], own: &[TravelTime]) -> Vec<Vec<i64>> {
     let mut times: Vec<Vec<i64>> = ports
         .iter()
         .map(|from| {
             let each = ports
                 .iter()
-                .map(|to| (hours(firm, *from, *to) * 3600.0).ceil() as i64);
+                .map(|to| (hours(own, *from, *to) * 3600.0).ceil() as i64);
             each.collect()
         })
         .collect();
@@ -65,9 +63,8 @@ pub(crate) fn travel_s(firm: &Firm) -> Vec<Vec<i64>> {
     times
 }
 
-fn hours(firm: &Firm, from: PortCode, to: PortCode) -> f64 {
-    let own = firm
-        .travel_times
+fn hours(own: &[TravelTime], from: PortCode, to: PortCode) -> f64 {
+    let own = own
         .iter()
         .find(|time| (time.from, time.to) == (from, to) || (time.to, time.from) == (from, to));
     own.map_or_else(|| usual_hours(from, to), |time| time.hours)

@@ -1,6 +1,6 @@
 //! Crews: those teams of a firm that are alike, or one team with a name.
 
-use crate::input::{Firm, Input, Team, Teams, travel_s};
+use crate::input::{Firm, Input, Team, Teams};
 use crate::ports::PortCode;
 use crate::solve::{self, TakenHours, Window};
 use crate::time::Instant;
@@ -127,7 +127,7 @@ impl Crew<'_> {
         solve::Crew {
             teams: self.teams(),
             jobs_a_team: self.firm.jobs_a_team_day,
-            travel_s: travel_s(self.firm),
+            travel_s: self.firm.travel_s(),
             taken: taken.collect(),
         }
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// One job, or hours that are given away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::solve) struct Stop {
+pub(crate) struct Stop {
     /// The choice; none for hours that are given away.
     pub(super) choice: Option<usize>,
     pub(super) window: Window,
@@ -23,7 +23,7 @@ pub(super) struct Day {
 }
 
 /// The stops of a crew on days near each other.
-pub(in crate::solve) struct Spell<'a> {
+pub(crate) struct Spell<'a> {
     pub(super) crew: &'a Crew,
     pub(super) days: Vec<Day>,
     pub(super) max_travel_s: i64,
@@ -67,7 +67,7 @@ impl Team {
 impl<'a> Spell<'a> {
     /// Builds the spell of some choices of one crew, with the hours of these
     /// days that are given away.
-    pub(in crate::solve) fn new(problem: &'a Problem, crew: usize, choices: &[usize]) -> Spell<'a> {
+    pub(crate) fn new(problem: &'a Problem, crew: usize, choices: &[usize]) -> Spell<'a> {
         let of = &problem.crews[crew];
         let mut days: BTreeMap<i32, Day> = BTreeMap::new();
         for &choice in choices {
@@ -181,6 +181,6 @@ impl<'a> Spell<'a> {
 }
 
 /// Returns the longest travel of a crew.
-pub(in crate::solve) fn max_travel_s(crew: &Crew) -> i64 {
+pub(crate) fn max_travel_s(crew: &Crew) -> i64 {
     crew.travel_s.iter().flatten().copied().max().unwrap_or(0)
 }
