@@ -81,6 +81,7 @@ const deeds: Record<string, string> = {
   'POST /vessels/{id}/port-calls.csv': 'Sent a vessel’s port calls as a file',
   'POST /vessels/{id}/port-calls.ics': 'Sent a vessel’s port calls as a calendar',
   'POST /port-calls.csv': 'Sent the fleet’s port calls as a file',
+  'POST /port-calls/timestamps': 'Received a time of a port call from a port system',
   'POST /work-orders': 'Ordered an adjustment',
   'POST /work-orders/{id}/offer': 'Offered an order',
   'POST /work-orders/{id}/accept': 'Accepted an order',
