@@ -14,7 +14,7 @@ pub const HEADING_STEP_DEG: u16 = 15;
 pub const MAGNETIC_LATITUDE_STEP_DEG: i16 = 10;
 
 /// Counts of samples by heading and magnetic latitude.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Coverage {
     /// Width of a heading sector, degrees.
@@ -55,6 +55,18 @@ pub struct CoverageCell {
     pub magnetic_latitude_from_deg: i16,
     /// Number of samples in it.
     pub samples: u64,
+}
+
+impl Default for Coverage {
+    /// Returns the coverage of no sample.
+    fn default() -> Coverage {
+        Coverage {
+            heading_step_deg: HEADING_STEP_DEG,
+            magnetic_latitude_step_deg: MAGNETIC_LATITUDE_STEP_DEG,
+            bands: Vec::new(),
+            cells: Vec::new(),
+        }
+    }
 }
 
 impl Coverage {
@@ -123,8 +135,6 @@ pub fn coverage(samples: impl IntoIterator<Item = (CompassHeading, f64, f64)>) -
         *cells.entry((band_from, sector_of(compass))).or_default() += 1;
     }
     Coverage {
-        heading_step_deg: HEADING_STEP_DEG,
-        magnetic_latitude_step_deg: MAGNETIC_LATITUDE_STEP_DEG,
         bands: bands.into_values().collect(),
         cells: cells
             .into_iter()
@@ -136,6 +146,7 @@ pub fn coverage(samples: impl IntoIterator<Item = (CompassHeading, f64, f64)>) -
                 },
             )
             .collect(),
+        ..Coverage::default()
     }
 }
 
@@ -205,7 +216,8 @@ mod tests {
         ];
         for parted in 0..=samples.len() {
             let (one, other) = samples.split_at(parted);
-            let mut counted = coverage(one.iter().copied());
+            let mut counted = Coverage::default();
+            counted.append(&coverage(one.iter().copied()));
             counted.append(&coverage(other.iter().copied()));
             assert_eq!(counted, coverage(samples), "{parted}");
         }

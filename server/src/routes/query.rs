@@ -11,6 +11,7 @@ use binnacle_platform::error::Error;
 use std::collections::HashMap;
 use std::sync::Arc;
 use utoipa::openapi::path::{Operation, ParameterIn};
+use utoipa::openapi::security::SecurityRequirement;
 use utoipa::openapi::{OpenApi, RefOr};
 
 /// Names of the query parameters of each operation, by route and method.
@@ -30,7 +31,10 @@ impl QueryParameters {
                 (Method::DELETE, &item.delete),
             ];
             for (method, operation) in operations {
-                let needs_sign_in = |found: &&Operation| found.security.as_deref() != Some(&[]);
+                let needs_sign_in = |found: &&Operation| {
+                    let mut ways = found.security.iter().flatten();
+                    !ways.any(|way| *way == SecurityRequirement::default())
+                };
                 if let Some(operation) = operation.as_ref().filter(needs_sign_in) {
                     all.insert((route.clone(), method), names(operation));
                 }

@@ -260,7 +260,7 @@ async fn authorize(
     assert!(query["scope"].split(' ').any(|scope| scope == "openid"));
     let code = Uuid::new_v4().to_string();
     let back = format!(
-        "{}?code={code}&state={}",
+        "{}?code={code}&state={}&session_state=1&iss=provider",
         query["redirect_uri"], query["state"]
     );
     let mut state = provider.state.lock().unwrap();

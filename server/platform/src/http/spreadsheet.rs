@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn a_line_that_comes_in_parts_is_converted_whole() {
         assert_eq!(end_of_lines(b"a,b\n1,"), 4);
-        assert_eq!(end_of_lines(b"a,\"x\ny\"\n"), 9);
+        assert_eq!(end_of_lines(b"a,\"x\ny\"\n"), 8);
         assert_eq!(end_of_lines(b"a,\"x\n"), 0);
     }
 }
