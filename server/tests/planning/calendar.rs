@@ -139,7 +139,8 @@ async fn an_event_keeps_its_uid_and_its_sequence_grows(server: TestServer) {
         alarms.count()
     };
     assert_eq!((alarms(&before), alarms(&after)), (0, 1));
-    let is_a_day_before = |line: &String| line.starts_with("TRIGGER") && line.ends_with(":-P1D");
+    let is_a_day_before =
+        |line: &String| line.starts_with("TRIGGER") && line.ends_with(":-PT86400S");
     assert!(after.iter().any(is_a_day_before), "{after:?}");
     parties
         .post(&parties.ada, "/cancel", &json!({ "text": "sold" }))
