@@ -5,7 +5,7 @@
 
 mod store;
 
-pub use store::{current, list, rotate};
+pub use store::{current, list, of_server, rotate};
 
 use crate::app::App;
 use crate::ed25519::{self, to_hex};

@@ -24,6 +24,17 @@ pub async fn current(tx: &mut Tx, now: Time) -> Result<ServerKey> {
     }
 }
 
+/// Returns the key that signs now, outside a transaction.
+///
+/// # Errors
+/// Fails when the database fails.
+pub async fn of_server(db: &Db, now: Time) -> Result<ServerKey> {
+    let mut tx = db.begin().await?;
+    let key = current(&mut tx, now).await?;
+    tx.commit().await?;
+    Ok(key)
+}
+
 /// Retires the key that signs now, and makes the next.
 ///
 /// # Errors
