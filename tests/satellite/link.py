@@ -183,6 +183,9 @@ def main():
         link.deliver()
     here.close()
     os.waitpid(child, 0)
+    # The kernel takes the cable away some time after the namespace, and the next link needs the name.
+    subprocess.run(["ip", "link", "delete", "instruments"], check=False,
+                   stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 if __name__ == "__main__":

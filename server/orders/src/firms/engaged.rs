@@ -109,6 +109,28 @@ pub(super) enum Unsuitable {
     Firm(String),
 }
 
+/// Returns true if a job that begins on a day lies within working hours. Those of days that are
+/// worked round the clock join.
+fn is_within(
+    job: &JobHours<'_>,
+    begins_on: NaiveDate,
+    works_on: impl Fn(NaiveDate) -> bool,
+    hours_on: impl Fn(NaiveDate) -> [Instant; 2],
+) -> bool {
+    let mut reached = Instant(job.from.0);
+    for day in begins_on.iter_days() {
+        let [opens, closes] = hours_on(day);
+        if !works_on(day) || opens > reached || closes <= reached {
+            return false;
+        }
+        reached = closes;
+        if Instant(job.until.0) <= reached {
+            return true;
+        }
+    }
+    false
+}
+
 /// Reason for which a team may not do a job.
 fn obstacle(
     firm: &input::Firm,
@@ -129,9 +151,10 @@ fn obstacle(
         first_hour.unwrap_or(firm.first_hour),
         last_hour.unwrap_or(firm.last_hour),
     ];
-    let [opens, closes] = hours.map(|hour| Instant::at(day, hour, zone));
-    let (from, until) = (Instant(job.from.0), Instant(job.until.0));
-    if port.is_some() && !(opens <= from && until <= closes) {
+    let hours_on = |day| hours.map(|hour| Instant::at(day, hour, zone));
+    let works_on = |day| works(firm, team, day);
+    if port.is_some() && !is_within(job, day, works_on, hours_on) {
+        let [opens, closes] = hours_on(day);
         return time(format!("works from {opens} to {closes} on {day}"));
     }
     let held = team.and_then(|team| team.licences.as_ref());
