@@ -155,6 +155,9 @@ def main():
     bring_up("satellite", "10.77.0.1", "10.77.0.2")
     _, [ship], _, _ = socket.recv_fds(here, 16, 1)
     os.set_blocking(ship, False)
+    # The kernel takes the cable of an earlier link away some time after its namespace.
+    subprocess.run(["ip", "link", "delete", "instruments"], check=False,
+                   stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     ip("link", "add", "instruments", "type", "veth", "peer", "name", "instruments",
        "netns", str(child))
     bring_up("instruments", "10.78.0.1", "10.78.0.2")
@@ -183,9 +186,6 @@ def main():
         link.deliver()
     here.close()
     os.waitpid(child, 0)
-    # The kernel takes the cable away some time after the namespace, and the next link needs the name.
-    subprocess.run(["ip", "link", "delete", "instruments"], check=False,
-                   stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 if __name__ == "__main__":
