@@ -174,7 +174,7 @@ export const schedule = {
         await panel.getByLabel('Port call').locator('option:checked').innerText(),
         /^Antwerp/,
       );
-      await panel.getByLabel('Firm', { exact: true }).selectOption({ index: 1 });
+      await panel.getByRole('combobox', { name: 'Firm' }).selectOption({ index: 1 });
       await panel.getByLabel(/^Why/).fill('Agreed by telephone');
       await shoot('schedule-job', {}, panel);
       await panel.getByRole('button', { name: 'Pin and re-solve' }).click();

@@ -2,8 +2,8 @@
 //! gap.
 //!
 //! Teams are followed by the watch: what a crew does on days near each other is
-//! a spell, and the oracle [`routes`] says whether its teams can do it, and at
-//! what travel. The bound lets teams go from day to day only ([`relaxation`]):
+//! a spell, and the oracle `routes` says whether its teams can do it, and at
+//! what travel. The bound lets teams go from day to day only (`relaxation`):
 //! that is never dearer. Lagrangian prices of the needs give it and a starting point. The
 //! search improves that: needs displace each other. A choice whose reduced cost
 //! exceeds the gap is in no better assignment. The open choices fall into small
