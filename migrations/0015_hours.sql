@@ -1,8 +1,8 @@
 -- Hours of jobs, and the teams that firms state.
 
--- End of the job. Orders from before took the usual three hours.
-ALTER TABLE work_orders ADD COLUMN planned_until BIGINT NOT NULL DEFAULT 0;
-UPDATE work_orders SET planned_until = planned_at + 10800000000;
+-- Length of the job, microseconds: three hours where nobody gave one, as of orders from before and
+-- of those that an older server beside this one writes.
+ALTER TABLE work_orders ADD COLUMN job_us BIGINT NOT NULL DEFAULT 10800000000;
 
 -- Offset of the port's legal time from UTC when the hour was agreed, seconds. NULL: the port
 -- is unknown, or the order is from before.

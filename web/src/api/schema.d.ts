@@ -997,7 +997,7 @@ export interface paths {
          * @description The message is a timestamp of DCSA's standard for just-in-time port calls, version 1.2, as port
          *     systems and agents send it. Arrival and departure at the berth (`BRTH`, no service) make a port
          *     call whose reference is `portVisitReference`; estimated, planned and actual times amend it;
-         *     `OMIT` and `CANC` withdraw it.
+         *     `OMIT` and `CANC` of the visit withdraw it, those of a service do not.
          */
         post: operations["receive_timestamp"];
         delete?: never;

@@ -91,7 +91,7 @@ pub(crate) async fn under_way(tx: &mut Tx, vessel: VesselId) -> Result<Vec<Affec
     Ok(rows!(
         in &mut *tx,
         AffectedOrder,
-        "SELECT o.id, o.planned_at, o.planned_until, l.call_id,
+        "SELECT o.id, o.planned_at, o.planned_at + o.job_us AS planned_until, l.call_id,
                 CASE WHEN c.id IS NULL OR c.withdrawn_at IS NOT NULL THEN TRUE ELSE FALSE END
                     AS is_unlinked
          FROM work_orders o

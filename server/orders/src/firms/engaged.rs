@@ -178,3 +178,43 @@ fn works(firm: &input::Firm, team: Option<&Team>, day: NaiveDate) -> bool {
     let days = own.unwrap_or(&firm.working_days);
     days.contains(&day.weekday()) && !firm.closed.contains(&day)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use chrono::Weekday;
+
+    /// Returns whether a job in Rotterdam lies within hours that are worked on all days but Sundays.
+    fn is_worked(hours: [f64; 2], from: &str, until: &str) -> bool {
+        let zone = zone("Rotterdam (NLRTM)");
+        let [from, until] = [from, until].map(|text| Instant::parse(text).unwrap());
+        let job = JobHours {
+            port: "Rotterdam (NLRTM)",
+            from: Time(from.0),
+            until: Time(until.0),
+        };
+        let works_on = |day: NaiveDate| day.weekday() != Weekday::Sun;
+        let hours_on = |day| hours.map(|hour| Instant::at(day, hour, zone));
+        is_within(&job, from.date(zone), works_on, hours_on)
+    }
+
+    #[test]
+    fn a_night_lies_within_the_hours_of_days_worked_round_the_clock_only() {
+        // From 23:00 on a Thursday to 02:00, in the port's time.
+        let night = ["2026-11-26T22:00:00Z", "2026-11-27T01:00:00Z"];
+        assert!(is_worked([0.0, 24.0], night[0], night[1]));
+        assert!(!is_worked([0.0, 23.5], night[0], night[1]));
+        assert!(!is_worked([8.0, 24.0], night[0], night[1]));
+        // From a Saturday into a Sunday, in which the legal time changes once.
+        assert!(!is_worked(
+            [0.0, 24.0],
+            "2026-10-24T21:00:00Z",
+            "2026-10-25T00:00:00Z"
+        ));
+        assert!(is_worked(
+            [0.0, 24.0],
+            "2026-10-24T19:00:00Z",
+            "2026-10-24T22:00:00Z"
+        ));
+    }
+}

@@ -55,7 +55,8 @@ macro_rules! bookings_sql {
     ($where:literal) => {
         concat!(
             "SELECT v.operator_id, o.vessel_id, v.name AS vessel_name, o.id AS order_id,
-                    COALESCE(c.port, o.port) AS port, o.planned_at, o.planned_until, f.team,
+                    COALESCE(c.port, o.port) AS port, o.planned_at,
+                    o.planned_at + o.job_us AS planned_until, f.team,
                     CASE WHEN f.state = 'accepted' THEN TRUE ELSE FALSE END AS is_taken
              FROM work_order_offers f
              JOIN work_orders o ON o.vessel_id = f.vessel_id AND o.id = f.order_id
@@ -75,7 +76,7 @@ pub async fn list_bookings(db: &Db, firm: FirmId, from: Time) -> Result<Vec<Stor
     Ok(rows!(
         db,
         StoredBooking,
-        bookings_sql!("AND o.planned_until >= $2"),
+        bookings_sql!("AND o.planned_at + o.job_us >= $2"),
         firm,
         from
     )?)
@@ -91,7 +92,7 @@ pub(super) async fn list_around(
     Ok(rows!(
         in tx,
         StoredBooking,
-        bookings_sql!("AND o.planned_until >= $2 AND o.planned_at <= $3 AND o.id <> $4"),
+        bookings_sql!("AND o.planned_at + o.job_us >= $2 AND o.planned_at <= $3 AND o.id <> $4"),
         firm,
         between[0],
         between[1],

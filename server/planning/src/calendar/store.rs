@@ -169,7 +169,8 @@ pub(super) async fn list_orders(
     rows!(
         db,
         CalendarOrder,
-        "SELECT o.id, o.port, o.berth, o.planned_at, o.planned_until,
+        "SELECT o.id, o.port, o.berth, o.planned_at,
+                o.planned_at + o.job_us AS planned_until,
                 v.name AS vessel_name,
                 c.name AS compass_name, p.name AS operator_name, o.firm, o.adjuster_name,
                 o.last_seq, e.line, o.call_fit,

@@ -150,7 +150,7 @@ struct Received {
 /// The message is a timestamp of DCSA's standard for just-in-time port calls, version 1.2, as port
 /// systems and agents send it. Arrival and departure at the berth (`BRTH`, no service) make a port
 /// call whose reference is `portVisitReference`; estimated, planned and actual times amend it;
-/// `OMIT` and `CANC` withdraw it.
+/// `OMIT` and `CANC` of the visit withdraw it, those of a service do not.
 #[utoipa::path(post, path = "/port-calls/timestamps", tag = "adjusting", request_body = Timestamp,
     responses((status = 200, body = Received), (status = 401, body = Problem),
               (status = 403, body = Problem),
@@ -236,7 +236,8 @@ impl Timestamp {
                 EventType::Strt | EventType::Cmpl
             );
         let is_request = self.event_classifier_code == Classifier::Req;
-        self.ends_visit() || (self.facility_type_code == "BRTH" && !is_service && !is_request)
+        let is_of_visit = self.ends_visit() || self.facility_type_code == "BRTH";
+        is_of_visit && !is_service && !is_request
     }
 
     fn ends_visit(&self) -> bool {

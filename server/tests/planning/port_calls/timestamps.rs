@@ -72,6 +72,11 @@ async fn a_call_follows_from_arrival_and_departure_and_their_changes(server: Tes
     assert_eq!(amended["eta"], "2026-12-08T14:30:00Z");
     assert_eq!(amended["etd"], "2026-12-10T18:00:00Z");
     assert_eq!(amended["eta_uncertainty_h"], 6.0);
+    // A pilot who is not needed is no cancelled call.
+    let mut without_pilot = timestamp("CANC", "2026-12-08T14:30:00Z");
+    without_pilot["portCallServiceTypeCode"] = json!("PILO");
+    assert_eq!(effect(&ada, &without_pilot).await, "not_used");
+    assert_eq!(calls(&ada, &path).await.len(), 1);
     let cancelled = timestamp("CANC", "2026-12-08T14:30:00Z");
     assert_eq!(effect(&ada, &cancelled).await, "withdrawn");
     assert_eq!(calls(&ada, &path).await.len(), 0);

@@ -50,6 +50,11 @@ impl Hours {
         })
     }
 
+    /// Length in microseconds.
+    pub(crate) fn length_us(self) -> i64 {
+        self.until.0.micros() - self.from.0.micros()
+    }
+
     /// Length in hours.
     pub(crate) fn length_h(self) -> f64 {
         self.until.0.seconds_since(self.from.0) / 3600.0

@@ -23,7 +23,7 @@ macro_rules! summary_sql {
                     v.name AS vessel_name, o.id, o.compass_id, c.name AS compass_name,
                     CASE f.state WHEN 'open' THEN 'offered' WHEN 'proposed' THEN 'proposed'
                                  ELSE o.state END AS state,
-                    o.port, o.berth, o.planned_at, o.planned_until,
+                    o.port, o.berth, o.planned_at, o.planned_at + o.job_us AS planned_until,
                     o.agreed_utc_offset_s, o.adjuster_name, o.adjuster_licence, o.firm,
                     o.firm_id, o.created_at, o.created_by, o.completed_at, o.last_seq,
                     o.last_sha256, o.call_fit,

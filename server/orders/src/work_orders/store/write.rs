@@ -80,7 +80,7 @@ pub(crate) async fn insert(
         tx,
         "INSERT INTO work_orders (vessel_id, id, compass_id, state, port, berth, planned_at,
                                   adjuster_name, adjuster_licence, firm, created_at, created_by,
-                                  last_seq, last_sha256, planned_until, agreed_utc_offset_s)
+                                  last_seq, last_sha256, job_us, agreed_utc_offset_s)
          VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, 0, '', $13, $14)",
         order.vessel_id,
         id,
@@ -94,7 +94,7 @@ pub(crate) async fn insert(
         order.firm.as_deref(),
         now,
         author.name.as_str(),
-        order.hours().until,
+        order.hours().length_us(),
         utc_offset_s(&order.port, order.planned_at)
     )?;
     Ok(())
@@ -158,7 +158,7 @@ pub(crate) async fn append(
         "UPDATE work_orders
          SET state = $3, last_seq = $4, last_sha256 = $5, firm_id = $6, answer_by = $7,
              planned_at = $8, berth = $9, adjuster_name = $10, adjuster_licence = $11, firm = $12,
-             call_fit = $13, planned_until = $14, agreed_utc_offset_s = $15
+             call_fit = $13, job_us = $14, agreed_utc_offset_s = $15
          WHERE vessel_id = $1 AND id = $2",
         summary.vessel_id,
         summary.id,
@@ -173,7 +173,7 @@ pub(crate) async fn append(
         summary.adjuster_licence.as_deref(),
         summary.firm.as_deref(),
         summary.call_fit,
-        summary.planned_until,
+        summary.hours().length_us(),
         summary.agreed_utc_offset_s
     )?;
     let last = stored.log.last().map(|entry| entry.content.event());

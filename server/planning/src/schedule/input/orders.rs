@@ -61,7 +61,7 @@ pub(crate) async fn list_under_way(db: &Db, operator: OperatorId) -> Result<Vec<
         db,
         Order,
         "SELECT o.vessel_id, o.id, o.compass_id, o.state, o.port, o.planned_at,
-                o.planned_until, f.team, f.firm_id, l.call_id
+                o.planned_at + o.job_us AS planned_until, f.team, f.firm_id, l.call_id
          FROM work_orders o
          JOIN vessels v ON v.id = o.vessel_id
          LEFT JOIN work_order_offers f ON f.vessel_id = o.vessel_id AND f.order_id = o.id
@@ -85,7 +85,7 @@ pub(crate) async fn list_declined(db: &Db, operator: OperatorId) -> Result<Vec<O
         db,
         Order,
         "SELECT o.vessel_id, o.id, o.compass_id, o.state, o.port, o.planned_at,
-                o.planned_until, f.team, f.firm_id, l.call_id
+                o.planned_at + o.job_us AS planned_until, f.team, f.firm_id, l.call_id
          FROM work_order_offers f
          JOIN work_orders o ON o.vessel_id = f.vessel_id AND o.id = f.order_id
          JOIN vessels v ON v.id = o.vessel_id
