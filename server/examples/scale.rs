@@ -84,6 +84,7 @@ async fn measure(engine: Engine, looks: &[f64]) {
         if seq % 20 == 0 {
             let now = server.app.clock.now().into();
             events::prune(&server.app.db, now).await.unwrap();
+            vacuum(&server).await;
         }
         if measured.len() == MEASURED {
             let years = now_s / (365.0 * 86_400.0);
@@ -96,6 +97,7 @@ async fn measure(engine: Engine, looks: &[f64]) {
                 logged as f64 / years / 1e6,
                 memory_mb(),
             );
+            print_largest_tables(&server).await;
             measured.clear();
             looks.next();
         }
@@ -159,6 +161,28 @@ async fn written(server: &TestServer) -> f64 {
                 "SELECT CAST(pg_wal_lsn_diff(pg_current_wal_lsn(), '0/0') AS DOUBLE PRECISION)";
             sqlx::query_scalar(sql).fetch_one(pool).await.unwrap()
         }
+    }
+}
+
+/// Makes the space of replaced rows free for others, as PostgreSQL's autovacuum does within minutes:
+/// these days pass too fast for it.
+async fn vacuum(server: &TestServer) {
+    if let Pools::Postgres(pool) = server.app.db.pools() {
+        sqlx::query("VACUUM").execute(pool).await.unwrap();
+    }
+}
+
+/// Prints the largest tables of PostgreSQL with their indexes, kB.
+async fn print_largest_tables(server: &TestServer) {
+    let Pools::Postgres(pool) = server.app.db.pools() else {
+        return;
+    };
+    let sql = "SELECT relname::TEXT, pg_total_relation_size(oid), pg_indexes_size(oid)
+               FROM pg_class WHERE relkind = 'r' AND relnamespace = 'public'::regnamespace
+               ORDER BY 2 DESC LIMIT 8";
+    let tables: Vec<(String, i64, i64)> = sqlx::query_as(sql).fetch_all(pool).await.unwrap();
+    for (table, all, indexes) in tables {
+        println!("  {table}: {} of which indexes {}", all / 1000, indexes / 1000);
     }
 }
 
