@@ -182,7 +182,11 @@ async fn print_largest_tables(server: &TestServer) {
                ORDER BY 2 DESC LIMIT 8";
     let tables: Vec<(String, i64, i64)> = sqlx::query_as(sql).fetch_all(pool).await.unwrap();
     for (table, all, indexes) in tables {
-        println!("  {table}: {} of which indexes {}", all / 1000, indexes / 1000);
+        println!(
+            "  {table}: {} of which indexes {}",
+            all / 1000,
+            indexes / 1000
+        );
     }
 }
 

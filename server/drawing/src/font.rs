@@ -2,7 +2,7 @@
 //!
 //! The fonts are Noto Sans of the Noto Project, under the SIL Open Font License 1.1 (see
 //! `fonts/OFL.txt`), reduced to Latin, Greek and Cyrillic letters and common signs. A
-//! missing character is drawn as an empty box.
+//! missing character is drawn as U+FFFD, for an archived document may not leave it out.
 
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
@@ -45,7 +45,9 @@ impl Face {
         let characters = font.charmap();
         let metrics = font.glyph_metrics(Size::new(1.0), LocationRef::default());
         let drawn = text.char_indices().map(|(at, character)| {
-            let id = characters.map(character).unwrap_or(GlyphId::NOTDEF);
+            let known = characters.map(character);
+            let missing = || characters.map(char::REPLACEMENT_CHARACTER);
+            let id = known.or_else(missing).unwrap_or(GlyphId::NOTDEF);
             Drawn {
                 id,
                 advance: metrics.advance_width(id).unwrap_or(0.0),
@@ -111,11 +113,13 @@ mod tests {
     #[test]
     fn the_fonts_have_the_characters_of_the_cards() {
         for face in [Face::Regular, Face::Bold] {
+            let missing = face.draw("船")[0].id;
+            assert_ne!(missing, GlyphId::NOTDEF);
             for drawn in face.draw("Ñandú Ωμέγα Адмирал 0°–359° ±½ λχ −…")
             {
                 assert_ne!(drawn.id, GlyphId::NOTDEF);
+                assert_ne!(drawn.id, missing);
             }
-            assert_eq!(face.draw("船")[0].id, GlyphId::NOTDEF);
         }
     }
 

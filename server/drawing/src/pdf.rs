@@ -1,11 +1,14 @@
-//! PDF output of sheets.
+//! PDF output of sheets, as PDF/A-2u (ISO 19005-2): whatever is needed to show and to search the
+//! document decades later is in it.
 
 use super::font::Face;
 use super::{Mark, Pen, Point, Sheet};
 use anyhow::{Result, anyhow};
 use binnacle_compass::time::Timestamp;
 use krilla::Document;
+use krilla::SerializeSettings;
 use krilla::color::luma;
+use krilla::configure::{Archival, ConfigurationBuilder};
 use krilla::geom::{PathBuilder, Point as PdfPoint};
 use krilla::metadata::{DateTime, Metadata};
 use krilla::num::NormalizedF32;
@@ -33,7 +36,11 @@ struct Fonts([Font; 2]);
 /// Fails when the PDF writer rejects a sheet, which is a mistake in the code.
 pub fn pdf(sheets: &[Sheet], about: &About) -> Result<Vec<u8>> {
     let fonts = Fonts::load()?;
-    let mut document = Document::new();
+    let archival = ConfigurationBuilder::new().with_archival_validator(Archival::A2_U);
+    let mut document = Document::new_with(SerializeSettings {
+        configuration: archival.finish().map_err(|error| anyhow!("{error:?}"))?,
+        ..SerializeSettings::default()
+    });
     for sheet in sheets {
         let page = PageSettings::from_wh(sheet.width, sheet.height)
             .ok_or_else(|| anyhow!("a sheet without size"))?;
@@ -190,6 +197,21 @@ mod tests {
         assert!(document.starts_with(b"%PDF-1."));
         assert_eq!(document, written("Card"));
         assert_ne!(document, written("Book"));
+    }
+
+    #[test]
+    fn a_document_is_archival_whatever_a_name_is_written_with() {
+        let mut sheet = Sheet::a4();
+        let name = "船 \u{fffd}\u{fffe}\u{feff}\u{e000}\u{0}\u{7}\u{1f6a2} e\u{301}";
+        sheet.text((100.0, 100.0), Style::plain(8.0), name);
+        let about = About {
+            title: name.to_owned(),
+            created: Timestamp::parse("2026-11-21T07:00:00Z").unwrap(),
+        };
+        let document = pdf(&[sheet], &about).unwrap();
+        let text = String::from_utf8_lossy(&document);
+        assert!(text.contains("<pdfaid:part>2"), "{text}");
+        assert!(text.contains("<pdfaid:conformance>U"), "{text}");
     }
 
     #[test]

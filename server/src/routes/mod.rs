@@ -197,6 +197,7 @@ fn complete(document: &mut utoipa::openapi::OpenApi) {
 /// Adds the readable document and the dashboard to the routes of people.
 fn with_dashboard(people: Router<ServerState>) -> Router<ServerState> {
     people
+        .merge(card::check::page_router())
         .route("/api/openapi.json", get(docs::document))
         .route("/api/docs", get(docs::page))
         .route("/api/{*rest}", get(no_such_route).fallback(no_such_route))

@@ -8,6 +8,7 @@ mod analysis;
 mod azimuths;
 mod binnacles;
 mod card;
+mod card_check;
 mod changes;
 mod course_over_ground;
 mod deviation_book;

@@ -101,6 +101,12 @@ pub struct Card {
     pub model: CardModel,
     /// Notes for the reader, a sentence each; the most pressing first.
     pub notes: Vec<String>,
+    /// Code by which anyone who holds the card can check it: `GET /card-checks/{code}`.
+    pub check_code: String,
+    /// Address of the page that does so, which the sheet has as a QR code; none where the server's
+    /// public address is not configured.
+    #[schema(required, example = "https://binnacle.example.com/check/AXk…")]
+    pub check_url: Option<String>,
     /// Each 5°, for the curve.
     #[serde(skip)]
     pub curve: Vec<DeviationRow>,

@@ -3,6 +3,7 @@
 //! Invariant: a card is a function of the stored records and of the requested place and time. The
 //! time of the request only decides whether the model is too old.
 
+use super::check::CardContent;
 use super::contents::{
     Card, CardAdjuster, CardCoefficients, CardCorrectors, CardModel, CardNotRecorded, CardPlace,
     CardRow, CardStatus, CardVerification, CardVessel, MagneticCargo, PREDICTED,
@@ -13,6 +14,7 @@ use super::observed::{Observed, STEP_DEG};
 use super::refusal::{OLDEST_DAYS, Refusal};
 use binnacle_compass::deviation::{Coefficients as Exact, DeviationError};
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
 use binnacle_fleet::adjustments::CompletedOrder;
 use binnacle_fleet::alerts::{CardEffect, OpenAlert};
@@ -20,6 +22,8 @@ use binnacle_fleet::binnacles::StoredRevision;
 use binnacle_fleet::compasses::Compass;
 use binnacle_fleet::deviation::{self, DeviationRow};
 use binnacle_fleet::models::StoredModel;
+use binnacle_platform::error::{self, Error};
+use binnacle_platform::signing_keys::ServerKey;
 use binnacle_platform::time::Time;
 
 /// Degrees of compass heading between points of the curve.
@@ -52,10 +56,14 @@ pub(super) struct CardInput {
     pub(super) own_limit_deg: f64,
     /// Time of the request.
     pub(super) now: Time,
+    /// Key that signs the card's code.
+    pub(super) key: ServerKey,
+    /// Public address of the server.
+    pub(super) public_url: Option<String>,
 }
 
 /// Makes the card, or returns the reason for refusing it.
-pub(super) fn make(input: CardInput) -> Result<Card, Refusal> {
+pub(super) fn make(input: CardInput) -> error::Result<Card> {
     let CardInput { model, place, .. } = &input;
     not_suspected(&input.alerts)?;
     not_too_old(model.data_until, place.at.max(input.now))?;
@@ -64,19 +72,17 @@ pub(super) fn make(input: CardInput) -> Result<Card, Refusal> {
         z_nt: place.z_nt,
     };
     let ship = &model.model.0;
-    let curve = deviation::table(ship, earth, CURVE_STEP_DEG)?;
+    let curve = deviation::table(ship, earth, CURVE_STEP_DEG).map_err(Refusal::from)?;
     let widest_band95_deg = widest(&curve, input.limit_deg)?;
-    let lines = deviation::table(ship, earth, STEP_DEG)?;
-    let coefficients = CardCoefficients {
-        exact: Exact::new(&ship.parameters_over_lambda, earth)?.to_degrees(),
-        constant_deg: ship.constant_deg,
-        handbook: ship.approximate_coefficients(earth)?,
-    };
+    let lines = deviation::table(ship, earth, STEP_DEG).map_err(Refusal::from)?;
+    let coefficients = coefficients(ship, earth)?;
     let at = place.at;
     let cargo = cargo_at(&input.logbook, at);
     let adjusted_at = last(&input.logbook, LogbookKind::Adjustment, at);
     let adjusted_by = adjusted_by(&input.completed, adjusted_at);
-    let worst = deviation::worst_of(&curve).ok_or(DeviationError::NotFinite)?;
+    let worst = deviation::worst_of(&curve).ok_or(Refusal::from(DeviationError::NotFinite))?;
+    let check_code = content(&input, &lines).code(&input.key);
+    let check_code = check_code.map_err(|error| Error::Internal(error.into()))?;
     let verified_by = verified_by(model, &input.completed);
     let unverified = unverified(model, &input.completed);
     let next_due = next_due(&due::Facts {
@@ -139,11 +145,39 @@ pub(super) fn make(input: CardInput) -> Result<Card, Refusal> {
             estimator: model.estimator.clone(),
             input_hash: model.input_hash.clone(),
         },
+        check_url: input
+            .public_url
+            .map(|url| format!("{}/check/{check_code}", url.trim_end_matches('/'))),
+        check_code,
         curve,
         vessel: input.vessel,
         compass: input.compass,
         place: input.place,
     })
+}
+
+fn coefficients(ship: &Model, earth: EarthField) -> Result<CardCoefficients, Refusal> {
+    Ok(CardCoefficients {
+        exact: Exact::new(&ship.parameters_over_lambda, earth)?.to_degrees(),
+        constant_deg: ship.constant_deg,
+        handbook: ship.approximate_coefficients(earth)?,
+    })
+}
+
+/// Returns what the card's code says.
+fn content(input: &CardInput, lines: &[DeviationRow]) -> CardContent {
+    let CardInput { model, place, .. } = input;
+    let tenths = |row: &DeviationRow| (10.0 * row.deviation_deg).round() as i16;
+    CardContent {
+        vessel: input.vessel.id,
+        compass: input.compass.id,
+        version: model.version,
+        epoch_from_us: model.replaces().map(|change| change.since.micros()),
+        at_us: place.at.0.micros(),
+        h_nt: place.h_nt.round() as u32,
+        z_nt: place.z_nt.round() as i32,
+        deviation_tenths: lines.iter().map(tenths).collect(),
+    }
 }
 
 /// Returns the verification of the adjustment that the model comes from.

@@ -6,8 +6,11 @@
 //!   certificate. Facts that nobody has recorded are marked so, or left blank for a person's pen.
 //! - Each compass has a card of its own.
 //! - A card that would mislead is refused, with the reason.
-//! - The same model, place and date make the same card, to the byte.
+//! - The same model, place and date make the same card, to the byte, while the server's signing key
+//!   is the same.
+//! - Anyone who holds a card can check whether it is in force.
 
+pub mod check;
 mod contents;
 mod csv;
 mod due;
@@ -38,6 +41,7 @@ use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{FileContent, FileName, Id, Json, Params, file, time};
 use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_platform::signing_keys;
 use binnacle_platform::time::Time;
 use contents::{CardPlace, CardVessel};
 use make::{CardInput, make};
@@ -54,6 +58,7 @@ where
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new()
+        .merge(check::router())
         .routes(routes!(card_json))
         .routes(routes!(card_pdf))
         .routes(routes!(card_svg))
@@ -195,6 +200,8 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let binnacle = binnacles::current(db, id, compass.id).await?;
     let logbook = logbook::of_compass(db, id, compass.id).await?;
     let alerts = alerts::list_in_force(db, id, compass.id).await?;
+    let key = signing_keys::of_server(db, now).await?;
+    let public_url = app.config.mail.public_url.clone();
     let made = tokio::task::spawn_blocking(move || {
         let role = match model.foretold_by {
             Some(_) => SampleRole::Predicted(&model.model.0),
@@ -221,8 +228,10 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
             limit_deg: settings.alerts.band95_deg,
             own_limit_deg: settings.alerts.deviation_deg,
             now,
+            key,
+            public_url,
         };
-        make(input).map_err(Error::from)
+        make(input)
     });
     made.await?
 }

@@ -54,6 +54,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("POST /calendar-feeds", PARTY_WRITES),
     ("DELETE /calendar-feeds/{id}", OPERATORS_WRITES),
     ("GET /calendar.ics", PARTY_READS),
+    ("GET /card-checks/{code}", OPEN),
     ("GET /events", PARTY_READS),
     ("GET /firm-terms", FLEET_READS),
     ("GET /firms", ANYONE),

@@ -1,5 +1,6 @@
 //! Lower part of the sheet: coefficients, the ship's state, notes, signatures and the source.
 
+use super::qr_code;
 use super::style::{GREY, LEFT, RIGHT, UNKNOWN, draw_labelled, known};
 use crate::card::contents::{Card, MagneticCargo};
 use binnacle_compass::deviation::CoefficientsInDegrees;
@@ -9,6 +10,10 @@ use binnacle_fleet::binnacles::describe_setting;
 use binnacle_platform::time::Time;
 
 const SECOND: f32 = 262.0;
+/// Right edges of the exact and of the handbook's coefficients.
+const COEFFICIENTS: [f32; 2] = [LEFT + 72.0, LEFT + 116.0];
+/// Left edge of the code by which the card is checked, and its side.
+const CODE: (f32, f32) = (LEFT + 138.0, 66.0);
 /// Upper edge of the signatures, from the sheet's upper edge.
 const SIGNATURES: f32 = A4.1 - MARGIN - 68.0;
 const NOTE_LINE: f32 = 9.4;
@@ -16,6 +21,7 @@ const NOTE_LINE: f32 = 9.4;
 /// Draws the lower part below `top`.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card, top: f32) {
     coefficients(sheet, card, top + 8.0);
+    check(sheet, card, top + 2.0);
     let below = state(sheet, card, top + 8.0).max(top + 80.0);
     let below = correctors(sheet, card, below + 5.0);
     notes(sheet, card, below + 5.0);
@@ -26,8 +32,8 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card, top: f32) {
 fn coefficients(sheet: &mut Sheet, card: &Card, top: f32) {
     let small = Style::plain(7.5).grey(GREY);
     sheet.text((LEFT, top), Style::bold(8.0), "Coefficients");
-    sheet.text((LEFT + 112.0, top), small.end(), "exact");
-    sheet.text((LEFT + 168.0, top), small.end(), "handbook");
+    sheet.text((COEFFICIENTS[0], top), small.end(), "exact");
+    sheet.text((COEFFICIENTS[1], top), small.end(), "handbook");
     let of = |found: &CoefficientsInDegrees| {
         [
             found.a_deg,
@@ -43,12 +49,23 @@ fn coefficients(sheet: &mut Sheet, card: &Card, top: f32) {
     for (index, name) in ["A", "B", "C", "D", "E"].into_iter().enumerate() {
         let y = top + 11.0 * (index + 1) as f32;
         sheet.text((LEFT + 6.0, y), style, name);
-        sheet.text((LEFT + 112.0, y), style.end(), signed(exact[index]));
-        sheet.text((LEFT + 168.0, y), style.end(), signed(handbook[index]));
+        sheet.text((COEFFICIENTS[0], y), style.end(), signed(exact[index]));
+        sheet.text((COEFFICIENTS[1], y), style.end(), signed(handbook[index]));
     }
     let constant = signed(card.coefficients.constant_deg);
-    let says = format!("handbook A includes {constant} of alignment and offsets");
+    let says = format!("handbook A includes {constant} of offsets");
     sheet.text((LEFT + 6.0, top + 66.0), Style::plain(6.8).grey(GREY), says);
+}
+
+/// Draws the code by which the card is checked, where there is an address for it.
+fn check(sheet: &mut Sheet, card: &Card, top: f32) {
+    let Some(url) = &card.check_url else { return };
+    let (left, side) = CODE;
+    if qr_code::draw(sheet, (left, top), side, url) {
+        let at = (left + side / 2.0, top + side + 6.5);
+        let small = Style::plain(6.5).grey(GREY).middle();
+        sheet.text(at, small, "scan: is it in force?");
+    }
 }
 
 /// Draws the ship's state. Returns the lower edge.

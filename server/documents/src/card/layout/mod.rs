@@ -6,6 +6,7 @@
 mod chart;
 mod foot;
 mod head;
+mod qr_code;
 mod style;
 mod table;
 
