@@ -154,7 +154,7 @@ fn derive(
 const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
 /// Encodes bytes in base64url (RFC 4648, section 5) without padding.
-fn base64url(bytes: &[u8]) -> String {
+pub(crate) fn base64url(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len() * 4 / 3 + 2);
     for chunk in bytes.chunks(3) {
         let word = chunk
@@ -169,7 +169,8 @@ fn base64url(bytes: &[u8]) -> String {
     text
 }
 
-fn from_base64url(text: &str) -> Option<Vec<u8>> {
+/// Decodes base64url without padding.
+pub(crate) fn from_base64url(text: &str) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(text.len() * 3 / 4);
     let (mut word, mut bits) = (0_u32, 0_u32);
     for letter in text.bytes() {
