@@ -6,7 +6,7 @@ CARGO ?= cargo
 # What has tests, and the programs that tests drive: benchmarks and studies are no part of it.
 TESTED := --lib --bins --tests --example changes_baselines
 
-.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak soak-agent bench bench-link bench-latency bench-formats bench-peer bench-scale bench-changes bench-web study study-adjust study-ships study-losses methods clean
+.PHONY: help setup web build release deb demo test test-rust test-web test-api test-browser lint soak soak-agent bench bench-link bench-latency bench-formats bench-peer bench-scale bench-changes bench-web study study-adjust study-ships study-losses methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -21,6 +21,9 @@ web: web/dist/index.html ## Build the dashboard
 
 build: web ## Build the three programs, optimised
 	$(CARGO) build --release --locked -p binnacle-server -p binnacle-agent -p binnacle-simulator
+
+release: build ## Put the programs, what they are made of (CycloneDX) and checksums into target/dist
+	@scripts/release
 
 deb: setup ## Make the agent's Debian package and check it (ARCH=arm64)
 	@scripts/deb $(ARCH)

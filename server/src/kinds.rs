@@ -2,11 +2,13 @@
 //! capability in the order of the OpenAPI document.
 
 use binnacle_fleet::{alerts, event_kinds as fleet_events};
+use binnacle_orders::dispatch;
 use binnacle_orders::{event_kinds as orders_events, work_orders};
 use binnacle_planning::notifications::{self, NoticeKinds};
-use binnacle_planning::{event_kinds as planning_events, reports};
-use binnacle_platform::events;
+use binnacle_planning::{calendar, event_kinds as planning_events, port_calls, reports};
+use binnacle_platform::quotas::QuotaList;
 use binnacle_platform::webhooks::{self, MessageKinds};
+use binnacle_platform::{events, sign_in_watch, tokens, users};
 
 /// Returns all kinds of messages of the server.
 pub fn message_kinds() -> MessageKinds {
@@ -23,8 +25,20 @@ pub fn notice_kinds() -> NoticeKinds {
     notifications::NOTICE_KINDS
         .into_iter()
         .chain(work_orders::notice_kinds::ALL)
-        .chain([alerts::NOTICE_KIND])
+        .chain([alerts::NOTICE_KIND, sign_in_watch::NOTICE_KIND])
         .collect()
+}
+
+/// Returns all quotas of the server.
+pub fn quotas() -> QuotaList {
+    QuotaList::from_iter([
+        users::QUOTA,
+        tokens::QUOTA,
+        webhooks::QUOTA,
+        calendar::QUOTA,
+        port_calls::QUOTA,
+        dispatch::MESSAGES_QUOTA,
+    ])
 }
 
 /// Returns all kinds of live events of the server.

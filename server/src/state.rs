@@ -1,6 +1,6 @@
 //! State of the whole server: that of the platform and of single capabilities.
 
-use crate::kinds::{message_kinds, notice_kinds};
+use crate::kinds::{message_kinds, notice_kinds, quotas};
 use axum::extract::FromRef;
 use binnacle_fleet::alerts;
 use binnacle_orders::berth_session::CorrectorPlanSlots;
@@ -9,6 +9,7 @@ use binnacle_planning::schedule::PlanSlots;
 use binnacle_platform::app::App;
 use binnacle_platform::db::Workload;
 use binnacle_platform::mail::TopicList;
+use binnacle_platform::quotas::QuotaList;
 use binnacle_platform::webhooks::MessageKinds;
 
 /// State of every route; each handler takes the part it needs by [`FromRef`].
@@ -75,6 +76,12 @@ impl FromRef<ServerState> for MessageKinds {
 impl FromRef<ServerState> for NoticeKinds {
     fn from_ref(state: &ServerState) -> NoticeKinds {
         state.notice_kinds.clone()
+    }
+}
+
+impl FromRef<ServerState> for QuotaList {
+    fn from_ref(_: &ServerState) -> QuotaList {
+        quotas()
     }
 }
 

@@ -16,7 +16,9 @@ pub fn subscribers() -> Subscribers {
         .on(schedule::on_terms_change)
         .on(schedule::on_vessel_event)
         .on(calendar::delete_feeds)
+        .on(calendar::delete_made)
         .on(notifications::create_notifications)
         .on(port_calls::note_berth_heading)
         .answer(vessels::find_owner)
+        .answer(calendar::list_made)
 }

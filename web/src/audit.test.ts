@@ -20,6 +20,8 @@ const line = (of: Partial<AuditLine>): AuditLine => ({
   vessel_id: null,
   order_id: null,
   status: 201,
+  account: null,
+  refusal: null,
   ...of,
 });
 
@@ -86,8 +88,18 @@ describe('who did it, and how it went', () => {
     expect(actor(line({ actor_name: '' }))).toBe('a person');
   });
 
+  it('says as whom someone unknown tried to sign in, and why it was refused', () => {
+    const unknown = line({ actor_kind: 'unidentified', actor_id: null, actor_name: '' });
+    expect(actor(unknown)).toBe('Someone unknown');
+    expect(actor({ ...unknown, account: 'ada@example.com' })).toBe(
+      'Someone unknown, as ada@example.com',
+    );
+    expect(result({ status: 401, refusal: 'wrong_password' })).toBe('refused: wrong password');
+  });
+
   it('is told from the answer', () => {
-    expect([201, 303, 404, 500, null].map(result)).toEqual([
+    const of = (status: number | null) => result({ status, refusal: null });
+    expect([201, 303, 404, 500, null].map(of)).toEqual([
       'done',
       'done',
       'refused (404)',

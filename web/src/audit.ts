@@ -66,8 +66,9 @@ export function routes(): { route: string; words: string }[] {
   return all.sort((a, b) => a.words.localeCompare(b.words));
 }
 
-export function actor(line: Pick<AuditLine, 'actor_kind' | 'actor_name'>): string {
+export function actor(line: Pick<AuditLine, 'actor_kind' | 'actor_name' | 'account'>): string {
   const { actor_kind: kind, actor_name: name } = line;
+  if (kind === 'unidentified') return t().by.unidentified(line.account);
   if (kind === 'command') return t().by.command;
   if (kind === 'agent') return t().by.agent(name);
   const person = name === '' ? t().unnamed : name;
@@ -75,7 +76,8 @@ export function actor(line: Pick<AuditLine, 'actor_kind' | 'actor_name'>): strin
 }
 
 /** How it went; an answer that sends a browser elsewhere is one too. */
-export function result(status: number | null): string {
+export function result({ status, refusal }: Pick<AuditLine, 'status' | 'refusal'>): string {
+  if (refusal !== null) return t().refusals[refusal];
   if (status === null) return t().notNoted;
   if (status < 400) return t().done;
   return status < 500 ? t().refused(status) : t().failed(status);

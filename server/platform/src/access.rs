@@ -7,7 +7,7 @@
 //! site's form cannot send.
 
 use crate::app::App;
-use crate::audit::{Actor, RequestContext};
+use crate::audit::{Actor, Refusal, RequestContext};
 use crate::error::{Error, Result};
 use crate::ids::{FirmId, OperatorId, SessionId, TokenId, UserId};
 use crate::secret;
@@ -240,8 +240,11 @@ impl Caller {
     async fn find(parts: &Parts, app: &App) -> Result<Caller> {
         let now = app.clock.now().into();
         if let Some(token) = bearer(parts) {
-            let holder = tokens::find_holder(&app.db, token, now).await?;
-            let holder = holder.ok_or(Error::Unauthenticated)?;
+            let Some(holder) = tokens::find_holder(&app.db, token, now).await? else {
+                RequestContext::of(parts)?.refuse(Refusal::InvalidToken, None);
+                return Err(Error::Unauthenticated);
+            };
+            app.accepted.note(secret::hash(token));
             return Ok(Caller {
                 user: holder.user,
                 read_only: holder.scope == Scope::Read,
@@ -253,6 +256,7 @@ impl Caller {
         let (user, session) = session::find_user(&app.db, &secret::hash(token), now, app.idle_s())
             .await?
             .ok_or(Error::Unauthenticated)?;
+        app.accepted.note(secret::hash(token));
         if !parts.method.is_safe() && !parts.headers.contains_key(REQUEST_HEADER) {
             return Err(Error::Forbidden(
                 "a change authenticated by cookie needs the header X-Binnacle-Request: 1",

@@ -7,7 +7,7 @@ use crate::events::{Announcer, Event, Live, Places};
 use crate::identity_provider::Provider;
 use crate::outage::Disk;
 use crate::password::Hashing;
-use crate::request_rates::RequestRates;
+use crate::request_rates::{AcceptedCredentials, RequestRates};
 use metrics_exporter_prometheus::PrometheusHandle;
 use std::sync::Arc;
 use tokio::sync::Notify;
@@ -34,6 +34,12 @@ pub struct App {
     pub work: Arc<Notify>,
     /// Requests of each caller in this minute.
     pub request_rates: Arc<RequestRates>,
+    /// Uploads of each vessel in this day.
+    pub uploads: Arc<RequestRates>,
+    /// Sessions and tokens that were accepted lately.
+    pub accepted: Arc<AcceptedCredentials>,
+    /// Refusals of each caller in this minute.
+    pub refusal_rates: Arc<RequestRates>,
     /// Hashing of passwords, by a few at a time.
     pub hashing: Arc<Hashing>,
     /// Cached metadata of the OpenID Connect provider.
@@ -57,6 +63,9 @@ impl App {
             announcer: Arc::default(),
             work: Arc::new(Notify::new()),
             request_rates: Arc::default(),
+            uploads: Arc::new(RequestRates::daily()),
+            accepted: Arc::default(),
+            refusal_rates: Arc::default(),
             hashing: Arc::default(),
             provider: Arc::default(),
             stopping: CancellationToken::new(),

@@ -29,9 +29,9 @@ impl Origin {
         self.address.map_or_else(String::new, |ip| ip.to_string())
     }
 
-    /// Returns the network under which failed sign-ins are counted: an IPv4 address, or an
-    /// IPv6 /64, because its holder controls all of its addresses.
-    pub(crate) fn network(&self) -> String {
+    /// Returns the network under which requests and failed sign-ins are counted: an IPv4 address, or
+    /// an IPv6 /64, because its holder controls all of its addresses.
+    pub fn network(&self) -> String {
         match self.address {
             Some(IpAddr::V6(ip)) => {
                 let [a, b, c, d, ..] = ip.segments();
@@ -40,6 +40,15 @@ impl Origin {
             Some(ip) => format!("address {ip}"),
             None => "address unknown".to_owned(),
         }
+    }
+
+    /// Returns the IPv6 /48 of the address, of which one site may have all (RFC 6177, section 2).
+    pub(crate) fn site(&self) -> Option<String> {
+        let Some(IpAddr::V6(ip)) = self.address else {
+            return None;
+        };
+        let [a, b, c, ..] = ip.segments();
+        Some(format!("address {a:x}:{b:x}:{c:x}::/48"))
     }
 }
 
@@ -113,11 +122,15 @@ mod tests {
     fn addresses_of_one_ipv6_network_count_as_one() {
         let of = |text: &str| Origin {
             address: text.parse().ok(),
-            program: String::new(),
+            ..Origin::default()
         };
         let one = of("2001:db8:1:2::7").network();
         assert_eq!(one, of("2001:db8:1:2:ffff::9").network());
         assert_ne!(one, of("2001:db8:1:3::7").network());
+        let site = |text: &str| of(text).site();
+        assert_eq!(site("2001:db8:1:2::7"), site("2001:db8:1:3::7"));
+        assert_ne!(site("2001:db8:1:2::7"), site("2001:db8:2:2::7"));
+        assert_eq!(site("192.0.2.1"), None);
         assert_ne!(of("192.0.2.1").network(), of("192.0.2.2").network());
     }
 }

@@ -91,6 +91,14 @@ pub enum Error {
         /// Seconds to wait.
         retry_after_s: u64,
     },
+    /// More uploads in a day than a vessel may send.
+    #[error("more than {limit} uploads in a day; try again in {retry_after_s} s")]
+    TooManyUploads {
+        /// Most uploads in a day.
+        limit: u32,
+        /// Seconds to wait.
+        retry_after_s: u64,
+    },
     /// Too many open streams of events.
     #[error("you have {0} streams of live events open already; close one")]
     TooManyStreams(usize),
@@ -268,6 +276,11 @@ impl Error {
                 "too-many-requests",
                 "Too many requests",
             ),
+            Error::TooManyUploads { .. } => (
+                StatusCode::TOO_MANY_REQUESTS,
+                "too-many-uploads",
+                "Too many uploads",
+            ),
             Error::TooManyStreams(_) => (
                 StatusCode::TOO_MANY_REQUESTS,
                 "too-many-streams",
@@ -325,6 +338,7 @@ impl IntoResponse for Error {
         }
         if let Error::Throttled { retry_after_s }
         | Error::TooManyRequests { retry_after_s, .. }
+        | Error::TooManyUploads { retry_after_s, .. }
         | Error::Unavailable { retry_after_s }
         | Error::DiskFull { retry_after_s } = self
         {

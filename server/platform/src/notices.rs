@@ -26,6 +26,8 @@ pub enum Readers {
     Firms,
     /// Users of operators and firms.
     OperatorsAndFirms,
+    /// Admins of operators.
+    Admins,
 }
 
 /// Mail about notices of a kind, unless a user chooses another way.
@@ -64,8 +66,8 @@ pub struct Notice {
     pub text: String,
     /// Page of the dashboard to link to.
     pub path: String,
-    /// Vessel concerned.
-    pub vessel: VesselId,
+    /// Vessel concerned, if it is one.
+    pub vessel: Option<VesselId>,
     /// Id of what the notice is about, if that is a single thing of the vessel.
     pub about: Option<Uuid>,
 }
@@ -100,8 +102,9 @@ impl Readers {
     /// Checks whether users with this role are among them.
     pub fn include(self, role: Role) -> bool {
         match role {
-            Role::Admin | Role::Viewer => self != Readers::Firms,
-            Role::Adjuster => self != Readers::Operators,
+            Role::Admin => self != Readers::Firms,
+            Role::Viewer => matches!(self, Readers::Operators | Readers::OperatorsAndFirms),
+            Role::Adjuster => matches!(self, Readers::Firms | Readers::OperatorsAndFirms),
             Role::PlatformAdmin => false,
         }
     }

@@ -20,6 +20,8 @@ pub(super) async fn copy(url: &str, into: &Path) -> Result<()> {
     let from = place(url)?;
     let into = into.to_str().context("the file's name is not UTF-8")?;
     let mut connection = open(&from).await?;
+    // Copying mends an index that does not fit its table, and so hides damage.
+    must_be_whole(&mut connection, &from, "PRAGMA quick_check(1)").await?;
     query("VACUUM INTO $1")
         .bind(into)
         .execute(&mut connection)
@@ -33,11 +35,7 @@ pub(super) async fn copy(url: &str, into: &Path) -> Result<()> {
 pub(super) async fn check(file: &Path) -> Result<()> {
     let damaged = || format!("{} is damaged", file.display());
     let mut connection = open(file).await.with_context(damaged)?;
-    let found: Vec<String> = query_scalar("PRAGMA integrity_check(1)")
-        .fetch_all(&mut connection)
-        .await
-        .with_context(damaged)?;
-    ensure!(found == ["ok"], "{}: {}", damaged(), found.join(", "));
+    must_be_whole(&mut connection, file, "PRAGMA integrity_check(1)").await?;
     let tables: i64 = query_scalar("SELECT COUNT(*) FROM sqlite_schema WHERE name = $1")
         .bind(MIGRATIONS_TABLE)
         .fetch_one(&mut connection)
@@ -52,9 +50,23 @@ pub(super) async fn check(file: &Path) -> Result<()> {
     Ok(())
 }
 
+async fn must_be_whole(
+    connection: &mut SqliteConnection,
+    file: &Path,
+    check: &'static str,
+) -> Result<()> {
+    let damaged = || format!("{} is damaged", file.display());
+    let found: Vec<String> = query_scalar(check)
+        .fetch_all(connection)
+        .await
+        .with_context(damaged)?;
+    ensure!(found == ["ok"], "{}: {}", damaged(), found.join(", "));
+    Ok(())
+}
+
 async fn open(file: &Path) -> Result<SqliteConnection> {
     let options = SqliteConnectOptions::new().filename(file).read_only(true);
     SqliteConnection::connect_with(&options)
         .await
-        .with_context(|| format!("cannot open {}", file.display()))
+        .with_context(|| format!("{} is damaged or cannot be read", file.display()))
 }

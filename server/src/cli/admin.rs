@@ -35,6 +35,9 @@ pub enum AdminCommand {
     /// Retire the key by which the server counter-signs work orders, and make the next; the old one
     /// stays published, so that older evidence can be checked
     RotateSigningKey,
+    /// Seal all secrets in the database by the first key of --secrets-key; the keys after it open
+    /// what they sealed
+    SealSecrets,
     /// Revoke an agent's token; the agent must be enrolled again
     RevokeAgent {
         /// Id of the vessel

@@ -11,11 +11,10 @@ use binnacle_planning::{notifications, reports, schedule};
 use binnacle_platform::app::App;
 use binnacle_platform::clock::Clock;
 use binnacle_platform::config::{Database, Serve};
-use binnacle_platform::db::Db;
 use binnacle_platform::event_stream::{EventListener, announce as announce_events};
 use binnacle_platform::mail::Mailer;
 use binnacle_platform::tls::TlsAcceptor;
-use binnacle_platform::{audit, outbox, webhooks};
+use binnacle_platform::{audit, outbox, seal_rotation, sign_in_watch, webhooks};
 use sd_notify::NotifyState;
 use std::future::Future;
 use std::io::{IsTerminal, Write};
@@ -42,8 +41,11 @@ const MAIL_SENDERS: usize = 2;
 pub fn serve(config: Serve) -> Result<ExitCode> {
     start_log(config.log_json);
     block_on(async {
-        let db = Db::connect(&config.database.database_url, subscribers()).await?;
-        db.migrate().await?;
+        let db = config.database.open(subscribers()).await?;
+        let claim = db.claim_to_serve().await?;
+        db.check_file().await?;
+        db.migrate_claimed(&claim).await?;
+        seal_rotation::check(&db).await?;
         let listener = TcpListener::bind(config.listen)
             .await
             .with_context(|| format!("cannot listen on {}", config.listen))?;
@@ -52,6 +54,7 @@ pub fn serve(config: Serve) -> Result<ExitCode> {
         announce(if tls.is_some() { "https" } else { "http" }, &listener)?;
         let app = App::new(db, Clock::System, config, health::install_metrics()?);
         run(app, listener, tls).await?;
+        drop(claim);
         Ok(ExitCode::SUCCESS)
     })
 }
@@ -85,6 +88,7 @@ pub async fn run(app: App, listener: TcpListener, tls: Option<TlsAcceptor>) -> R
         }
         parts.spawn(alerts::watch(app.clone()));
         parts.spawn(audit::watch(app.clone()));
+        parts.spawn(sign_in_watch::watch(app.clone()));
         parts.spawn(schedule::run(app.clone(), state.plan_slots.clone()));
         parts.spawn(dispatch::watch(app.clone()));
         parts.spawn(notifications::watch(app.clone()));
@@ -181,7 +185,7 @@ fn announce(scheme: &str, listener: &TcpListener) -> Result<()> {
 /// Fails when the database cannot be reached or a migration fails.
 pub fn migrate(database: &Database) -> Result<ExitCode> {
     block_on(async {
-        let db = Db::connect(&database.database_url, subscribers()).await?;
+        let db = database.open(subscribers()).await?;
         db.migrate().await?;
         db.close().await;
         Ok(ExitCode::SUCCESS)

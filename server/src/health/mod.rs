@@ -10,6 +10,7 @@ use axum::middleware::Next;
 use axum::response::Response;
 use binnacle_fleet::analysis_queue;
 use binnacle_platform::app::App;
+use binnacle_platform::audit::{Refusal, RequestContext};
 use binnacle_platform::client_address::Origin;
 use binnacle_platform::db::Workload;
 use binnacle_platform::error::{Error, Problem, Result};
@@ -99,10 +100,12 @@ async fn readyz(State(app): State<App>) -> (StatusCode, String) {
     responses((status = 200, body = String), (status = 401, body = Problem)))]
 async fn metrics_page(
     State(app): State<App>,
+    request: RequestContext,
     origin: Origin,
     headers: HeaderMap,
 ) -> Result<String> {
     if !may_read_metrics(&app, &origin, &headers) {
+        request.refuse(Refusal::InvalidToken, None);
         return Err(Error::Unauthenticated);
     }
     // What the database does not say is left as it was: the rest is needed then most.

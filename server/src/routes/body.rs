@@ -1,7 +1,8 @@
 //! Bodies of refused requests: all their mistakes at once, each with a JSON pointer (RFC 6901).
 //!
-//! Invariants: a request is read, and refused, by its handler alone. Only then is its body
-//! compared with the schema of the OpenAPI document, for what else is wrong with it.
+//! Invariants: a request is refused by its handler alone. Only then is its body compared with the
+//! schema of the OpenAPI document, for what else is wrong with it. A list where the schema has an
+//! object is kept from the handler, which would read it as the object's members in their order.
 
 use super::docs::DOCUMENT;
 use axum::body::{Body, Bytes};
@@ -9,11 +10,10 @@ use axum::extract::{MatchedPath, Request};
 use axum::http::header::{CONTENT_LENGTH, CONTENT_TYPE};
 use axum::http::{Method, StatusCode};
 use axum::middleware::Next;
-use axum::response::Response;
+use axum::response::{IntoResponse, Response};
+use binnacle_platform::error::Error;
 use binnacle_platform::http::MAX_JSON_BYTES;
-use futures_util::StreamExt;
 use serde_json::{Value, json};
-use std::sync::{Arc, Mutex, PoisonError};
 
 /// Most mistakes that a response lists.
 const MOST_MISTAKES: usize = 50;
@@ -23,16 +23,41 @@ pub(super) async fn list_mistakes(request: Request, next: Next) -> Response {
     let Some(schema) = body_schema(&request) else {
         return next.run(request).await;
     };
-    let read = Arc::new(Mutex::new(Vec::new()));
-    let response = next.run(copied(request, &read)).await;
-    if response.status() != StatusCode::UNPROCESSABLE_ENTITY {
-        return response;
-    }
-    let bytes = std::mem::take(&mut *read.lock().unwrap_or_else(PoisonError::into_inner));
-    let Ok(body) = serde_json::from_slice::<Value>(&bytes) else {
+    let (parts, body) = request.into_parts();
+    let Ok(bytes) = axum::body::to_bytes(body, MAX_JSON_BYTES).await else {
+        return Error::TooLarge(MAX_JSON_BYTES).into_response();
+    };
+    let body = serde_json::from_slice::<Value>(&bytes).ok();
+    let has_list = body.as_ref().is_some_and(|body| has_list(schema, body));
+    let given = if has_list {
+        Body::from(LIST_FOR_OBJECT)
+    } else {
+        Body::from(bytes)
+    };
+    let response = next.run(Request::from_parts(parts, given)).await;
+    let Some(body) = body.filter(|_| response.status() == StatusCode::UNPROCESSABLE_ENTITY) else {
         return response;
     };
     with_mistakes(response, &mistakes(schema, &body)).await
+}
+
+/// Body that no handler takes, in place of one with a list for an object.
+const LIST_FOR_OBJECT: &str = "\"a list in place of an object\"";
+
+/// Checks whether a list stands where the schema has an object.
+fn has_list(schema: &'static Value, body: &Value) -> bool {
+    let mut found = Vec::new();
+    check(schema, body, "", &mut found);
+    found.iter().any(|mistake| {
+        let pointer = mistake["pointer"].as_str().unwrap_or_default();
+        let is_list = body.pointer(pointer).is_some_and(Value::is_array);
+        is_list && mistake["detail"].as_str().is_some_and(is_of_object)
+    })
+}
+
+/// Checks whether a mistake is that something is no object.
+fn is_of_object(detail: &str) -> bool {
+    detail.contains("is not of type object")
 }
 
 /// Returns the schema of an operation's JSON body.
@@ -44,21 +69,6 @@ fn body_schema(request: &Request) -> Option<&'static Value> {
     let method = request.method().as_str().to_lowercase();
     let operation = DOCUMENT["paths"].get(route.as_str())?.get(method)?;
     operation["requestBody"]["content"]["application/json"].get("schema")
-}
-
-/// Returns the request with a body that is copied while its handler reads it.
-fn copied(request: Request, read: &Arc<Mutex<Vec<u8>>>) -> Request {
-    let read = Arc::clone(read);
-    request.map(|body| {
-        Body::from_stream(body.into_data_stream().inspect(move |chunk| {
-            let mut read = read.lock().unwrap_or_else(PoisonError::into_inner);
-            if let Ok(bytes) = chunk
-                && read.len() + bytes.len() <= MAX_JSON_BYTES
-            {
-                read.extend_from_slice(bytes);
-            }
-        }))
-    })
 }
 
 /// Adds mistakes to the problem in a response.

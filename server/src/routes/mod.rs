@@ -24,10 +24,10 @@ use binnacle_orders::work_orders::NotAdjustableFields;
 use binnacle_orders::{api as orders_api, firms};
 use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
 use binnacle_platform::db::Workload;
-use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers, spreadsheet};
+use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers, host, spreadsheet};
 use binnacle_platform::{
-    audit, audit_api, error, event_stream, events, mail, oidc, session, session_api, signing_keys,
-    users, webhooks,
+    audit, audit_api, error, event_stream, events, mail, oidc, quotas_api, session, session_api,
+    signing_keys, users, webhooks,
 };
 use binnacle_priors as priors;
 use serde_json::json;
@@ -110,6 +110,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(signing_keys::router())
         .merge(oidc::router())
         .merge(users::router())
+        .merge(quotas_api::router())
         .merge(audit_api::router())
         .merge(operators::router())
         .merge(firms::router())
@@ -264,6 +265,7 @@ pub fn router(state: &ServerState) -> Router {
     }
     router
         .method_not_allowed_fallback(no_such_method)
+        .layer(axum::middleware::from_fn(host::must_be_one))
         .layer(DefaultBodyLimit::max(MAX_JSON_BYTES))
         .layer(TimeoutLayer::with_status_code(
             StatusCode::REQUEST_TIMEOUT,

@@ -1,6 +1,7 @@
 //! Limit on the requests of each caller, and the headers that state it.
 //!
-//! Invariants: a caller is a session or token, or else a client address. The headers are those
+//! Invariants: a caller is a session or token that was accepted before, or else a client's network: an
+//! invented token is no new caller. The headers are those
 //! of draft-ietf-httpapi-ratelimit-headers-10.
 
 use axum::extract::{Request, State};
@@ -22,10 +23,10 @@ const LEFT: HeaderName = HeaderName::from_static("ratelimit");
 pub(super) async fn limit(State(app): State<App>, request: Request, next: Next) -> Response {
     let (parts, body) = request.into_parts();
     let credential = bearer(&parts).or_else(|| cookie::token(&parts, &app.config));
-    let caller = match credential {
-        Some(credential) => secret::hash(credential),
-        None => Origin::of_request(&parts, &app).address_text().into_bytes(),
-    };
+    let accepted = credential.map(secret::hash);
+    let accepted = accepted.filter(|hash| app.accepted.contains(hash));
+    let caller =
+        accepted.unwrap_or_else(|| Origin::of_request(&parts, &app).network().into_bytes());
     let now_s = u64::try_from(app.clock.now().micros() / 1_000_000).unwrap_or(0);
     let limit = app.config.requests_per_minute;
     let quota = app.request_rates.count(caller, now_s, limit);

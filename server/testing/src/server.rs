@@ -75,9 +75,9 @@ impl TestServer {
     }
 
     async fn open(database: Database, clock: Clock, settings: &[&str]) -> TestServer {
-        let db = Db::connect(&database.url, subscribers()).await.unwrap();
-        db.migrate().await.unwrap();
         let config = config(&database.url, settings);
+        let db = config.database.open(subscribers()).await.unwrap();
+        db.migrate().await.unwrap();
         let app = App::new(db, clock, config, metrics());
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let url = format!("http://{}", listener.local_addr().unwrap());
@@ -93,9 +93,14 @@ impl TestServer {
 
     /// Stops the server and starts another on the same database.
     pub async fn restart(self) -> TestServer {
+        self.restart_with(&[]).await
+    }
+
+    /// Stops the server and starts another with more settings on the same database.
+    pub async fn restart_with(self, settings: &[&str]) -> TestServer {
         self.app.stopping.cancel();
         self.serving.await.unwrap().unwrap();
-        TestServer::open(self.database, self.app.clock, &[]).await
+        TestServer::open(self.database, self.app.clock, settings).await
     }
 
     /// Starts a server on a backup restored into a new database.
@@ -125,6 +130,12 @@ impl TestServer {
             .unwrap();
         let config = config(&self.database.url, &[]);
         App::new(db, self.app.clock.clone(), config, metrics())
+    }
+
+    /// Opens the database again with other settings, as a server that starts does.
+    pub async fn open_again(&self, settings: &[&str]) -> Db {
+        let config = config(&self.database.url, settings);
+        config.database.open(subscribers()).await.unwrap()
     }
 
     /// Runs SQL on the database without the server's knowledge.

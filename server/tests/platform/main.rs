@@ -4,6 +4,7 @@
 
 mod audit;
 mod authorisation;
+mod defences;
 mod events;
 mod headers;
 mod mail;

@@ -2,9 +2,11 @@
 
 use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::port_calls::{call, path};
-use binnacle_server_testing::{ApiResponse, Engine, Person, TestServer, on_both};
+use binnacle_server_testing::{ApiResponse, Engine, PASSWORD, Person, TestServer, on_both};
 use reqwest::Method;
 use serde_json::{Value, json};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
 
 on_both!(
     a_query_parameter_that_does_not_exist_is_refused_by_name,
@@ -291,6 +293,78 @@ async fn a_caller_beyond_the_rate_waits_and_others_do_not() {
     assert!((1.0..=60.0).contains(&wait_s), "{wait_s}");
     eve.get("/vessels").await.good();
     server.advance(wait_s);
+    ada.get("/vessels").await.good();
+    server.finish().await;
+}
+
+#[tokio::test]
+async fn a_request_has_one_host() {
+    let server = TestServer::start(Engine::Sqlite).await;
+    let address = server.url.trim_start_matches("http://").to_owned();
+    for (hosts, status) in [
+        ("Host: one.example\r\n", "HTTP/1.1 200"),
+        ("Host: one.example\r\nHost: two.example\r\n", "HTTP/1.1 400"),
+        ("Host: one.example\r\nhost: one.example\r\n", "HTTP/1.1 400"),
+        ("", "HTTP/1.1 400"),
+    ] {
+        let mut stream = TcpStream::connect(&address).await.unwrap();
+        let request = format!("GET /healthz HTTP/1.1\r\n{hosts}Connection: close\r\n\r\n");
+        stream.write_all(request.as_bytes()).await.unwrap();
+        let mut response = String::new();
+        stream.read_to_string(&mut response).await.unwrap();
+        assert!(response.starts_with(status), "{hosts:?}: {response}");
+    }
+    server.finish().await;
+}
+
+#[tokio::test]
+async fn a_page_has_at_least_one_item_and_at_most_ten_thousand() {
+    let server = TestServer::start(Engine::Sqlite).await;
+    let ada = server.admin("ada").await;
+    for limit in ["0", "10001", "-1", "1.5", "99999999999"] {
+        let refused = ada.get(&format!("/vessels?limit={limit}")).await;
+        assert!([400, 422].contains(&refused.status), "{limit}: {refused:?}");
+    }
+    for limit in [1, 10_000] {
+        ada.get(&format!("/vessels?limit={limit}")).await.good();
+    }
+    server.finish().await;
+}
+
+#[tokio::test]
+async fn a_list_in_place_of_an_object_is_refused() {
+    let server = TestServer::start(Engine::Sqlite).await;
+    let ada = server.admin("ada").await;
+    let listed = ada.post("/tokens", &json!(["ERP", "read", null])).await;
+    assert_eq!((listed.status, listed.problem().as_str()), (422, "invalid"));
+    let pointers = listed.json()["errors"][0]["pointer"].clone();
+    assert_eq!(pointers, "");
+    let sign_in = server.http.post(format!("{}/api/v1/session", server.url));
+    let sign_in = sign_in.json(&json!([ada.email, PASSWORD, null]));
+    assert_eq!(ApiResponse::send(sign_in).await.problem(), "invalid");
+    // A missing sign-in comes before what is wrong with the body.
+    let nobody = server.http.post(format!("{}/api/v1/tokens", server.url));
+    let nobody = nobody.json(&json!(["ERP", "read", null]));
+    assert_eq!(ApiResponse::send(nobody).await.problem(), "unauthenticated");
+    assert_eq!(ada.get("/tokens").await.good()["items"], json!([]));
+    server.finish().await;
+}
+
+#[tokio::test]
+async fn invented_tokens_do_not_escape_the_rate() {
+    let few = ["--requests-per-minute", "20"];
+    let server = TestServer::start_with(Engine::Sqlite, &few).await;
+    let ada = server.admin("ada").await;
+    let mut last = 401;
+    for number in 0..20 {
+        let request = server.http.get(format!("{}/api/v1/vessels", server.url));
+        let request = match number % 2 {
+            0 => request.bearer_auth(format!("bna_invented{number}")),
+            _ => request.header("cookie", format!("binnacle_session=invented{number}")),
+        };
+        last = ApiResponse::send(request).await.status;
+    }
+    assert_eq!(last, 429);
     ada.get("/vessels").await.good();
     server.finish().await;
 }

@@ -10,14 +10,14 @@ use std::process::{Child, Command, Stdio};
 use std::thread::JoinHandle;
 
 /// The running program, with all its output.
-struct Program {
+pub(crate) struct Program {
     child: Child,
-    url: String,
+    pub(crate) url: String,
     log_output: JoinHandle<String>,
 }
 
 impl Program {
-    fn start(folder: &Path, log: &str, more: &[&str]) -> Program {
+    pub(crate) fn start(folder: &Path, log: &str, more: &[&str]) -> Program {
         let mut child = command(folder)
             .args(["serve", "--listen", "127.0.0.1:0", "--webhooks-to-private"])
             .args(["--smtp-url", "smtp://relay:smtp-pass-word@localhost:9"])
@@ -46,7 +46,7 @@ impl Program {
         }
     }
 
-    fn stop(mut self) -> String {
+    pub(crate) fn stop(mut self) -> String {
         let pid = rustix::process::Pid::from_child(&self.child);
         rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
         self.child.wait().unwrap();

@@ -300,7 +300,10 @@ async fn a_token_has_its_scope_until_revoked(server: TestServer) {
         assert_eq!(listed.status, 200);
         let created = ask(Method::POST, "/vessels").json(&json!({ "name": "Nao" }));
         assert_eq!(ApiResponse::send(created).await.status, status, "{scope}");
-        // A leaked token cannot create tokens that outlive it.
+        // A leaked token cannot end people's sessions.
+        let sessions = ApiResponse::send(ask(Method::DELETE, "/sessions")).await;
+        assert_eq!(sessions.problem(), "forbidden");
+        // It cannot create tokens that outlive it.
         let more = ask(Method::POST, "/tokens").json(&json!({ "name": "x", "scope": "read" }));
         assert_eq!(ApiResponse::send(more).await.status, 403);
 

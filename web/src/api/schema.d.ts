@@ -171,9 +171,9 @@ export interface paths {
         };
         /**
          * Read the audit log
-         * @description Returns every change made or tried, and the work-order data read by firms. An operator's
-         *     admins see the actions of their people and agents, and those of firms on their vessels'
-         *     orders. A firm's people see the actions in the firm's name. Platform admins see all.
+         * @description Returns every change made or tried, the work-order data read by firms, and refused sign-ins. An
+         *     operator's admins see the actions of their people and agents, those of firms on their vessels'
+         *     orders, and what was tried with their people's accounts. A firm's people see the actions in the firm's name. Platform admins see all.
          */
         get: operations["list_audit"];
         put?: never;
@@ -943,6 +943,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/operators/{id}/quotas/{quota}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Set an operator's quota
+         * @description What is there beyond a lower limit stays.
+         */
+        put: operations["change_quota"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/port-calls": {
         parameters: {
             query?: never;
@@ -1018,6 +1038,27 @@ export interface paths {
          * @description Ports are those of UNECE's list of UN/LOCODEs. Accents do not matter.
          */
         get: operations["search_ports"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/quotas": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Show your quotas
+         * @description What your company has of each thing that is limited, and how much it may have. Something beyond the
+         *     limit is refused with the type `quota-exceeded`.
+         */
+        get: operations["list_quotas"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1290,7 +1331,8 @@ export interface paths {
          * @description The response sets a session cookie. A user with a second factor who sends no code gets
          *     `second-factor-needed` if the password is right, and repeats the request with the code.
          *     After five wrong passwords or codes for an e-mail address, each further attempt has to wait,
-         *     longer every time. The same holds after fifty from one network address.
+         *     longer every time. The same holds after fifty from one network address. A browser in which the
+         *     user signed in before, which a second cookie tells, is counted by itself.
          */
         post: operations["sign_in"];
         /**
@@ -1545,7 +1587,10 @@ export interface paths {
         get?: never;
         put?: never;
         post?: never;
-        /** Revoke an API token */
+        /**
+         * Revoke an API token
+         * @description What was made with it stays, unless you say otherwise.
+         */
         delete: operations["delete_token"];
         options?: never;
         head?: never;
@@ -3642,7 +3687,7 @@ export interface components {
          * @description Kind of actor.
          * @enum {string}
          */
-        ActorKind: "user" | "token" | "agent" | "command";
+        ActorKind: "user" | "token" | "agent" | "command" | "unidentified";
         /**
          * @description Cure of a refusal.
          * @enum {string}
@@ -3934,6 +3979,8 @@ export interface components {
         AlertState: "raised" | "acknowledged" | "cleared";
         /** @description Action that was done or tried. */
         AuditLine: {
+            /** @description E-mail address that was tried, of a refused sign-in. */
+            account: string | null;
             /**
              * Format: uuid
              * @description Id of the user or the agent.
@@ -3967,6 +4014,7 @@ export interface components {
             order_id: components["schemas"]["OrderId"] | null;
             /** @description Route with its ids filled in. */
             path: string;
+            refusal: components["schemas"]["Refusal"] | null;
             /** @description Route as named in this document, or the command. */
             route: string;
             /**
@@ -5078,6 +5126,19 @@ export interface components {
              * @description New password: at least 12 characters, neither common nor easily guessed.
              */
             new: string;
+        };
+        /**
+         * @description Limit to be set.
+         * @example {
+         *       "most": 100
+         *     }
+         */
+        ChangedQuota: {
+            /**
+             * Format: int64
+             * @description What there may be; `null` for the limit by default.
+             */
+            most: number | null;
         };
         /**
          * @description Changes to a user; omitted fields stay as they are.
@@ -6793,6 +6854,18 @@ export interface components {
             port?: string | null;
             to?: components["schemas"]["Time"] | null;
         };
+        /** @description What a token made and goes on without it. */
+        MadeByToken: {
+            /**
+             * Format: uuid
+             * @description Id of it.
+             */
+            id: string;
+            /** @description Kind of it. */
+            kind: components["schemas"]["MadeKind"];
+            /** @description Name or address of it. */
+            name: string;
+        };
         /** @description Calendar feed just created. */
         MadeCalendarFeed: components["schemas"]["CalendarFeed"] & {
             /**
@@ -6801,6 +6874,11 @@ export interface components {
              */
             url: string;
         };
+        /**
+         * @description Kind of what a token made.
+         * @enum {string}
+         */
+        MadeKind: "webhook" | "mail_recipient" | "report_recipient" | "calendar_feed";
         /** @description Newly created token. */
         MadeToken: components["schemas"]["Token"] & {
             /** @description Secret, to be sent as `Authorization: Bearer …`; never shown again. */
@@ -7596,7 +7674,7 @@ export interface components {
          * @description Subject of a notification.
          * @enum {string}
          */
-        NotificationKind: "due_soon" | "need_raised" | "offered" | "answered" | "answer_late" | "message" | "call_moved" | "on_board" | "completed" | "verified" | "verification_failed" | "withdrawn" | "alert";
+        NotificationKind: "due_soon" | "need_raised" | "offered" | "answered" | "answer_late" | "message" | "call_moved" | "on_board" | "completed" | "verified" | "verification_failed" | "withdrawn" | "alert" | "sign_ins_refused";
         /** @description A page of notifications. */
         NotificationList: {
             /** @description The newest first. */
@@ -8810,6 +8888,29 @@ export interface components {
              * @example 07:00
              */
             to: string;
+        };
+        /** @description Use of a quota. */
+        QuotaUse: {
+            /**
+             * Format: int64
+             * @description What there may be.
+             */
+            most: number;
+            /**
+             * @description Name of the quota.
+             * @example webhooks
+             */
+            name: string;
+            /**
+             * Format: int64
+             * @description What there is.
+             */
+            used: number;
+        };
+        /** @description Quotas of an operator or a firm. */
+        Quotas: {
+            /** @description All quotas. */
+            items: components["schemas"]["QuotaUse"][];
         };
         /**
          * @description Settings of an analysis, part of its input: a changed setting makes a new analysis of
@@ -10240,6 +10341,8 @@ export interface components {
             /** @description The token's id. */
             id: components["schemas"]["TokenId"];
             last_used_at: components["schemas"]["Time"] | null;
+            /** @description What was made with the token and goes on without it. */
+            made: components["schemas"]["MadeByToken"][];
             /** @description Purpose of the token, in the user's words. */
             name: string;
             /** @description Scope of the token. */
@@ -11841,6 +11944,10 @@ export interface operations {
                 order?: components["schemas"]["OrderId"];
                 /** @description Route, like `/api/v1/work-orders/{id}/model`. */
                 route?: string;
+                /** @description Id of an API token. */
+                token?: components["schemas"]["TokenId"];
+                /** @description `true` for refused sign-ins, codes and tokens alone. */
+                refused?: boolean;
                 /** @description First instant, RFC 3339. */
                 from?: string;
                 /** @description Instant after the last, RFC 3339. */
@@ -11941,6 +12048,10 @@ export interface operations {
                 order?: components["schemas"]["OrderId"];
                 /** @description Route, like `/api/v1/work-orders/{id}/model`. */
                 route?: string;
+                /** @description Id of an API token. */
+                token?: components["schemas"]["TokenId"];
+                /** @description `true` for refused sign-ins, codes and tokens alone. */
+                refused?: boolean;
                 /** @description First instant, RFC 3339. */
                 from?: string;
                 /** @description Instant after the last, RFC 3339. */
@@ -16468,6 +16579,131 @@ export interface operations {
             };
         };
     };
+    change_quota: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OperatorId"];
+                /** @example webhooks */
+                quota: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ChangedQuota"];
+            };
+        };
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_port_calls: {
         parameters: {
             query?: {
@@ -16866,6 +17102,71 @@ export interface operations {
             };
             /** @description Unprocessable Entity */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_quotas: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Quotas"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -19648,7 +19949,10 @@ export interface operations {
     };
     delete_token: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description `true` to remove what was made with the token too. */
+                with_made?: boolean;
+            };
             header?: never;
             path: {
                 id: components["schemas"]["TokenId"];
@@ -19663,6 +19967,15 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
             };
             /** @description Unauthorized */
             401: {

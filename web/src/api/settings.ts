@@ -36,8 +36,15 @@ export const listTokens = async () =>
 
 export const makeToken = (body: NewToken) => answer(client.POST('/api/v1/tokens', { body }));
 
-export const endToken = (id: string) =>
-  answer(client.DELETE('/api/v1/tokens/{id}', { params: { path: { id } } }));
+/** Ends a token, and what was made with it if that is wanted. */
+export const endToken = (id: string, withMade = false) =>
+  answer(
+    client.DELETE('/api/v1/tokens/{id}', {
+      params: { path: { id }, query: { with_made: withMade } },
+    }),
+  );
+
+export const listQuotas = async () => (await answer(client.GET('/api/v1/quotas'))).items;
 
 export const listUsers = () =>
   everyPage((after) =>

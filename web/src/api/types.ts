@@ -132,6 +132,7 @@ export type NewUser = Schemas['NewUser'];
 export type SecondFactorSecret = Schemas['SecondFactorSecret'];
 export type Session = Schemas['Session'];
 export type SignInRules = Schemas['SignInRules'];
+export type QuotaUse = Schemas['QuotaUse'];
 export type Token = Schemas['Token'];
 export type User = Schemas['User'];
 export type FleetReport = Schemas['FleetReport'];

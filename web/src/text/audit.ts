@@ -22,6 +22,7 @@ const deeds: Record<string, string> = {
   'POST /operators': 'Entered an operator',
   'PUT /operators/{id}/firms/{firm}': 'Had an operator work with a firm',
   'DELETE /operators/{id}/firms/{firm}': 'Had an operator work with a firm no more',
+  'PUT /operators/{id}/quotas/{quota}': 'Set an operator’s quota',
   'POST /session': 'Signed in',
   'GET /session/provider/callback': 'Signed in by the sign-in service',
   'POST /session/provider/code': 'Sent the code after the sign-in service',
@@ -119,7 +120,7 @@ const deeds: Record<string, string> = {
 
 export const audit = {
   title: 'Audit log',
-  lead: 'Every change that was made or tried, and what firms read of your vessels’ orders. The newest is first; times are UTC.',
+  lead: 'Every change that was made or tried, refused sign-ins, and what firms read of your vessels’ orders. The newest is first; times are UTC.',
   deeds,
   filter: 'What to show',
   who: 'Who',
@@ -141,6 +142,8 @@ export const audit = {
     token: (name: string) => `${name}, by an API token`,
     agent: (vessel: string) => (vessel === '' ? 'an agent' : `the agent aboard ${vessel}`),
     command: 'The server’s command line',
+    unidentified: (account: string | null) =>
+      account === null ? 'Someone unknown' : `Someone unknown, as ${account}`,
   },
   vessel: 'a vessel',
   order: 'the order',
@@ -148,6 +151,14 @@ export const audit = {
   notNoted: 'done; how it was answered was not noted',
   refused: (status: number) => `refused (${status})`,
   failed: (status: number) => `failed (${status})`,
+  refusals: {
+    wrong_password: 'refused: wrong password',
+    wrong_code: 'refused: wrong code',
+    throttled: 'refused: too many attempts',
+    provider: 'refused: not known from the sign-in service',
+    invalid_token: 'refused: invalid token',
+    invalid_code: 'refused: invalid code',
+  },
   more: 'Show older ones',
   loading: 'Looking…',
   emptyTitle: 'Nothing noted',

@@ -36,6 +36,7 @@ export const notifications = {
       verified: 'Headings at sea agree',
       verification_failed: 'A heading at sea does not agree',
       withdrawn: 'A job is cancelled, or given to another firm',
+      sign_ins_refused: 'Many sign-ins are refused',
       alert: 'An alert is raised, worsens, sinks to a notice or is over',
     },
     zone: 'Time zone',

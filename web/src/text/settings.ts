@@ -84,12 +84,35 @@ export const settings = {
     busy: 'Making…',
     nameMissing: 'Say what the token is for.',
     daysWrong: 'Give it 1 to 3650 days.',
-    made: 'Copy the token now: it is not shown again.',
+    copy: 'Copy the token now: it is not shown again.',
     done: 'I have it',
     ends: (when: string) => `ends ${when}`,
     used: (when: string) => `last used ${when}`,
     unused: 'never used',
     end: (name: string) => `End the token “${name}”`,
+    made: 'It made, and leaves behind:',
+    kinds: {
+      webhook: 'webhook',
+      mail_recipient: 'mail to',
+      report_recipient: 'monthly report to',
+      calendar_feed: 'calendar',
+    },
+    withMade: 'End with what it made',
+    endWithMade: (name: string) => `End the token “${name}” with what it made`,
+  },
+
+  quotas: {
+    title: 'How much there may be',
+    lead: 'Of your company together. Whoever runs this server can allow more.',
+    of: (used: number, most: number) => `${used} of ${most}`,
+    names: {
+      users: 'People',
+      api_tokens: 'API tokens',
+      webhooks: 'Webhooks',
+      calendar_feeds: 'Calendars',
+      port_calls: 'Port calls, past ones too',
+      order_log: 'Entries in the longest log of a job',
+    } as Record<string, string>,
   },
 
   people: {

@@ -4,7 +4,7 @@ use axum::extract::{FromRef, FromRequestParts};
 use axum::http::request::Parts;
 use binnacle_platform::access::bearer;
 use binnacle_platform::app::App;
-use binnacle_platform::audit::{Actor, RequestContext};
+use binnacle_platform::audit::{Actor, Refusal, RequestContext};
 use binnacle_platform::db::{Db, Result as DbResult, row};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{AgentId, CompassId, VesselId};
@@ -39,11 +39,19 @@ impl ShownToken {
     /// Fails when the request has none of an agent.
     pub(crate) fn of(parts: &Parts) -> Result<ShownToken> {
         let token = bearer(parts).ok_or(Error::Unauthenticated)?;
-        let vessel = secret::vessel_of_token(token).ok_or(Error::Unauthenticated)?;
+        let Some(vessel) = secret::vessel_of_token(token) else {
+            return Err(ShownToken::refuse(parts)?);
+        };
         Ok(ShownToken {
             vessel: VesselId(vessel),
             hash: secret::hash(token),
         })
+    }
+
+    /// Records that no agent has the token of a request, and returns the error.
+    pub(crate) fn refuse(parts: &Parts) -> Result<Error> {
+        RequestContext::of(parts)?.refuse(Refusal::InvalidToken, None);
+        Ok(Error::Unauthenticated)
     }
 }
 
@@ -57,9 +65,9 @@ where
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Agent> {
         let app = App::from_ref(state);
         let token = ShownToken::of(parts)?;
-        let agent = find_agent(&app.db, token.vessel, &token.hash)
-            .await?
-            .ok_or(Error::Unauthenticated)?;
+        let Some(agent) = find_agent(&app.db, token.vessel, &token.hash).await? else {
+            return Err(ShownToken::refuse(parts)?);
+        };
         RequestContext::of(parts)?.record_actor(&agent);
         Ok(agent)
     }

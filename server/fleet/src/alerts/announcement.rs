@@ -121,7 +121,7 @@ fn notice(change: &AlertChange) -> Option<Notice> {
         subject,
         text,
         path: format!("/vessels/{}", alert.vessel_id),
-        vessel: alert.vessel_id,
+        vessel: Some(alert.vessel_id),
         about: Some(alert.id.0),
     })
 }

@@ -4,7 +4,7 @@ use super::stream::{AgentStream, BoardStatus, LinkWeek};
 use crate::agent_auth::Agent;
 use crate::alerts;
 use crate::compasses::Compass;
-use binnacle_platform::audit::RequestContext;
+use binnacle_platform::audit::{Refusal, RequestContext};
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::error::{self, Error};
 use binnacle_platform::events::Event;
@@ -72,8 +72,12 @@ pub(super) async fn enrol(
          ORDER BY e.code_hash",
         code_hash.as_slice()
     )?
-    .ok_or(Error::NotFound("enrolment code"))?;
+    .ok_or_else(|| {
+        request.refuse(Refusal::InvalidCode, None);
+        Error::NotFound("enrolment code")
+    })?;
     if found.expires_at <= now {
+        request.refuse(Refusal::InvalidCode, None);
         return Err(Error::Gone(
             "this enrolment code has expired: ask the operator for a new one",
         ));

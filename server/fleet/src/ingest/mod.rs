@@ -35,6 +35,7 @@ use binnacle_platform::db::Tx;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::events::{self, NewEvent};
 use binnacle_platform::http::{FileContent, Id, Json, Params};
+use binnacle_platform::ids::VesselId;
 use binnacle_platform::time::Time;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::codec::MAX_BYTES;
@@ -104,6 +105,7 @@ async fn put_batch(
     Params(state): Params<AgentState>,
     body: std::result::Result<Bytes, BytesRejection>,
 ) -> Result<DownlinkResponse> {
+    must_not_flood(&app, sender.agent.vessel_id)?;
     let bytes = body.map_err(|rejection| too_large(&rejection))?;
     let batch = decode_batch(&bytes, StreamId(stream), seq)?;
     let delay_s = match state.wait {
@@ -150,6 +152,23 @@ async fn put_batch(
         return Ok(downlink::acknowledge(&app, received.contiguous_seq, &state));
     }
     downlink::answer(&app, sender.agent, stream, state).await
+}
+
+/// Refuses the uploads of a vessel beyond those of a day. An agent keeps its batches and sends them
+/// again; a program with a stolen token cannot fill the disk.
+fn must_not_flood(app: &App, vessel: VesselId) -> Result<()> {
+    let now_s = u64::try_from(app.clock.now().micros() / 1_000_000).unwrap_or(0);
+    let limit = app.config.uploads_per_day;
+    let day = app
+        .uploads
+        .count(vessel.0.as_bytes().to_vec(), now_s, limit);
+    if day.is_exceeded {
+        return Err(Error::TooManyUploads {
+            limit,
+            retry_after_s: day.resets_in_s,
+        });
+    }
+    Ok(())
 }
 
 /// Result of a received batch.

@@ -50,9 +50,9 @@ where
         let app = App::from_ref(state);
         let token = ShownToken::of(parts)?;
         let Id((stream, _)) = Id::<(Uuid, u64)>::from_request_parts(parts, state).await?;
-        let sender = find(&app.db, &token, stream)
-            .await?
-            .ok_or(Error::Unauthenticated)?;
+        let Some(sender) = find(&app.db, &token, stream).await? else {
+            return Err(ShownToken::refuse(parts)?);
+        };
         RequestContext::of(parts)?.record_actor(&sender.agent);
         if sender.stream_id.is_none() {
             return Err(Error::NotFound("stream"));

@@ -12,16 +12,27 @@ use axum::http::StatusCode;
 use binnacle_platform::access::{PartyReader, PartyWriter};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
+use binnacle_platform::db::{Tx, row};
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Valid};
 use binnacle_platform::idempotency::Key;
 use binnacle_platform::ids::{FirmId, OrderId};
+use binnacle_platform::quotas::Quota;
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
+use futures_util::future::BoxFuture;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
+
+/// Quota of the entries in the log of one order, beyond which no message is added.
+pub const QUOTA: Quota = Quota::new(
+    "order_log",
+    "entries in the log of the order",
+    2000,
+    longest_log,
+);
 
 pub(crate) fn router<S>() -> OpenApiRouter<S>
 where
@@ -141,6 +152,10 @@ async fn send_message(
         ));
     }
     if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
+        let entries = change.stored.log.len() as i64;
+        QUOTA
+            .must_be_above(&mut change.tx, writer.tenant, entries)
+            .await?;
         let offers = change.stored.state().offers;
         let exchange = Exchange {
             text: Some(text),
@@ -152,6 +167,25 @@ async fn send_message(
         change.commit().await?;
     }
     Ok(StatusCode::NO_CONTENT)
+}
+
+/// Counts the entries of a tenant's longest log of an order.
+fn longest_log(
+    tx: &mut Tx,
+    tenant: Tenant,
+    _: Time,
+) -> BoxFuture<'_, binnacle_platform::db::Result<i64>> {
+    Box::pin(async move {
+        let found = row!(
+            in tx,
+            (i64,),
+            "SELECT COALESCE(MAX(e.seq), 0) FROM work_order_entries e
+             JOIN vessels v ON v.id = e.vessel_id
+             WHERE v.operator_id = $1",
+            tenant.operator()
+        )?;
+        Ok(found.map_or(0, |(entries,)| entries))
+    })
 }
 
 /// Firm that a message is from or to.

@@ -13,6 +13,7 @@ pub(crate) mod port_call_check;
 pub(crate) mod reschedule;
 
 pub use call_links::link_once;
+pub use messages::QUOTA as MESSAGES_QUOTA;
 pub use new_port_calls::{NewCall, attach_new_calls};
 pub use offer_expiry::{lapse, watch};
 pub use port_call_changes::{CallUpdate, announce_call_updates};

@@ -85,7 +85,7 @@ fn notice(headline: &Headline, facts: String, summary: &Summary, entry: &Entry) 
         ),
         text,
         path: format!("/work-orders/{}", summary.id),
-        vessel: summary.vessel_id,
+        vessel: Some(summary.vessel_id),
         about: Some(summary.id.0),
     }
 }

@@ -9,7 +9,7 @@ mod ics;
 mod store;
 mod subscriber;
 
-pub use subscriber::delete_feeds;
+pub use subscriber::{delete_feeds, delete_made, list_made};
 
 use axum::extract::{FromRef, FromRequestParts, State};
 use axum::http::StatusCode;
@@ -19,11 +19,12 @@ use axum::response::{IntoResponse, Response};
 use binnacle_fleet::vessels;
 use binnacle_platform::access::{PartyReader, PartyWriter};
 use binnacle_platform::app::App;
-use binnacle_platform::audit::RequestContext;
+use binnacle_platform::audit::{Refusal, RequestContext};
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{FileContent, Id, Json, Listed, Page, Params, Valid, text};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{FeedId, VesselId};
+use binnacle_platform::quotas::Quota;
 use binnacle_platform::secret;
 use binnacle_platform::session;
 use binnacle_platform::tenants::Tenant;
@@ -32,6 +33,9 @@ use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
+
+/// Quota of a company's calendar feeds.
+pub const QUOTA: Quota = Quota::new("calendar_feeds", "calendars", 500, store::count);
 
 /// Prefix of a feed's token.
 const PREFIX: &str = "bnc_";
@@ -134,6 +138,9 @@ async fn create_feed(
     key.shown_once(&mut tx, writer.tenant, &request_hash, about.created_at)
         .await?;
     let hash = secret::hash(&token);
+    QUOTA
+        .must_have_room(&mut tx, writer.tenant, about.created_at)
+        .await?;
     store::insert(&mut tx, writer.tenant, writer.user, &about, &hash).await?;
     tx.commit().await?;
     let base = app.config.mail.public_url.as_deref().unwrap_or_default();
@@ -182,7 +189,13 @@ where
         if let Some(token) = address.token {
             let app = App::from_ref(state);
             let found = store::find(&app.db, &secret::hash(&token)).await?;
-            return found.ok_or(Error::Unauthenticated);
+            return match found {
+                Some(scope) => Ok(scope),
+                None => {
+                    RequestContext::of(parts)?.refuse(Refusal::InvalidCode, None);
+                    Err(Error::Unauthenticated)
+                }
+            };
         }
         let reader = PartyReader::from_request_parts(parts, state).await?;
         Ok(Scope {

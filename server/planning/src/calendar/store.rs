@@ -5,10 +5,12 @@ use binnacle_orders::work_orders::CallFit;
 use binnacle_orders::work_orders::State;
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::ids::{
-    CallId, CompassId, FeedId, FirmId, OperatorId, OrderId, UserId, VesselId,
+    CallId, CompassId, FeedId, FirmId, OperatorId, OrderId, TokenId, UserId, VesselId,
 };
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
+use binnacle_platform::tokens::{Made, MadeKind, named};
+use futures_util::future::BoxFuture;
 use uuid::Uuid;
 
 /// Age to which past orders are shown, seconds.
@@ -103,11 +105,12 @@ pub(super) async fn insert(
     feed: &Feed,
     hash: &[u8],
 ) -> Result<()> {
+    let by = tx.token();
     execute!(
         tx,
         "INSERT INTO calendar_feeds (id, operator_id, firm_id, vessel_id, token_hash, name,
-                                     created_at, created_by, user_id)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)",
+                                     created_at, created_by, user_id, made_by_token)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)",
         feed.id,
         tenant.operator(),
         tenant.firm(),
@@ -116,7 +119,8 @@ pub(super) async fn insert(
         feed.name.as_str(),
         feed.created_at,
         feed.created_by.as_str(),
-        user
+        user,
+        by
     )?;
     Ok(())
 }
@@ -135,6 +139,55 @@ pub(super) async fn delete(tx: &mut Tx, tenant: Tenant, id: FeedId) -> Result<bo
 /// Deletes all calendar feeds that a user created.
 pub(super) async fn delete_all_of(tx: &mut Tx, user: UserId) -> Result<u64> {
     execute!(tx, "DELETE FROM calendar_feeds WHERE user_id = $1", user)
+}
+
+/// Deletes the calendar feeds that an API token made.
+pub(super) async fn delete_made_by(tx: &mut Tx, token: TokenId) -> Result<u64> {
+    execute!(
+        tx,
+        "DELETE FROM calendar_feeds WHERE made_by_token = $1",
+        token
+    )
+}
+
+/// Returns the calendar feeds and the recipients of the report that a user's API tokens made.
+pub(super) async fn list_made(tx: &mut Tx, user: UserId) -> Result<Vec<(TokenId, Made)>> {
+    let feeds = rows!(
+        in &mut *tx,
+        (TokenId, Uuid, String),
+        "SELECT f.made_by_token, f.id, f.name FROM calendar_feeds f
+         JOIN api_tokens t ON t.id = f.made_by_token
+         WHERE t.user_id = $1
+         ORDER BY f.id",
+        user
+    )?;
+    let recipients = rows!(
+        in tx,
+        (TokenId, Uuid, String),
+        "SELECT r.made_by_token, p.id, p.address FROM report_recipients p
+         JOIN receivers r ON r.id = p.id
+         JOIN api_tokens t ON t.id = r.made_by_token
+         WHERE t.user_id = $1
+         ORDER BY p.id",
+        user
+    )?;
+    let mut made = named(MadeKind::CalendarFeed, feeds);
+    made.extend(named(MadeKind::ReportRecipient, recipients));
+    Ok(made)
+}
+
+/// Counts the calendar feeds of a tenant.
+pub(super) fn count(tx: &mut Tx, tenant: Tenant, _: Time) -> BoxFuture<'_, Result<i64>> {
+    Box::pin(async move {
+        let found = row!(
+            in tx,
+            (i64,),
+            "SELECT COUNT(*) FROM calendar_feeds WHERE operator_id = $1 OR firm_id = $2",
+            tenant.operator(),
+            tenant.firm()
+        )?;
+        Ok(found.map_or(0, |(count,)| count))
+    })
 }
 
 /// Returns the owner of the calendar with this token, unless its creator is disabled.

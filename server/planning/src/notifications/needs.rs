@@ -139,7 +139,7 @@ fn write_notice(need: &Need, kind: DeclaredKind) -> Notice {
             need.vessel_name, need.compass_name, need.due_on, need.reason
         ),
         path: format!("/vessels/{}", need.vessel_id),
-        vessel: need.vessel_id,
+        vessel: Some(need.vessel_id),
         about: None,
     }
 }

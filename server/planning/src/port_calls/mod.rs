@@ -38,6 +38,7 @@ use binnacle_platform::http::{
 };
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{CallId, OperatorId, VesselId};
+use binnacle_platform::quotas::Quota;
 use binnacle_schedule::calls::find_overlap;
 use call::{Amendment, CallList, Filter, NewCall, RevisedCall, Withdrawal};
 use commit::commit;
@@ -45,6 +46,9 @@ use store::Author;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
+
+/// Quota of the port calls of an operator's vessels, those that are over included.
+pub const QUOTA: Quota = Quota::new("port_calls", "port calls", 200_000, store::count);
 
 /// Returns the routes of this part.
 pub fn router<S>() -> OpenApiRouter<S>
@@ -154,6 +158,7 @@ async fn enter_port_call(
         }
         check_reference(&known, &call)?;
         check_overlap(&known, None, &call)?;
+        QUOTA.must_have_room(&mut tx, writer.operator, now).await?;
         let author = Author::from_user(&mut tx, writer.user, now).await?;
         store::insert(&mut tx, vessel, id, &call, Source::Api, &author).await?;
         let new = [moves::new_call(id, &call)];

@@ -8,8 +8,10 @@ use binnacle_platform::db::{Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{CallId, OperatorId, UserId, VesselId};
 use binnacle_platform::session;
+use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 use binnacle_schedule::ports::{self, PortCode};
+use futures_util::future::BoxFuture;
 use uuid::Uuid;
 
 /// A call's columns, with its vessel's name.
@@ -395,4 +397,23 @@ pub(super) async fn set_lay_heading(
         heading_deg
     )?;
     Ok(())
+}
+
+/// Counts the port calls of an operator's vessels.
+pub(super) fn count(
+    tx: &mut Tx,
+    tenant: Tenant,
+    _: Time,
+) -> BoxFuture<'_, binnacle_platform::db::Result<i64>> {
+    Box::pin(async move {
+        let found = row!(
+            in tx,
+            (i64,),
+            "SELECT COUNT(*) FROM port_calls c
+             JOIN vessels v ON v.id = c.vessel_id
+             WHERE v.operator_id = $1",
+            tenant.operator()
+        )?;
+        Ok(found.map_or(0, |(count,)| count))
+    })
 }

@@ -1,5 +1,6 @@
 //! Upload of port calls as CSV or iCalendar, and export as CSV.
 
+use super::QUOTA;
 use super::call::Source;
 use super::commit::commit;
 use super::moves;
@@ -277,6 +278,9 @@ pub(super) async fn store_file(
         uploaded.amended += amended.len();
         uploaded.unchanged += unchanged;
         uploaded.withdrawn += withdrawn.len();
+        if !new.is_empty() {
+            QUOTA.must_have_room(&mut tx, writer.operator, now).await?;
+        }
         for (id, call) in &new {
             store::insert(&mut tx, vessel, *id, call, source, &author).await?;
         }

@@ -31,6 +31,7 @@ pub async fn log_request(State(app): State<App>, request: Request, next: Next) -
         id: Uuid::now_v7(),
         at: app.clock.now().into(),
         address: from.address_text(),
+        network: from.network(),
         method: parts.method.as_str().to_owned(),
         path: filled(&route, &mut parts).await,
         facts: Mutex::new(facts),
@@ -41,7 +42,7 @@ pub async fn log_request(State(app): State<App>, request: Request, next: Next) -
     let span = info_span!("request", id = %trail.id);
     let request = Request::from_parts(parts, body);
     let mut response = next.run(request).instrument(span).await;
-    match trail.finish(&app.db, response.status()).await {
+    match trail.finish(&app, response.status()).await {
         // Responses over a satellite link carry no unnecessary header.
         Ok(true) if !trail.is_of_agent() => {
             if let Ok(id) = HeaderValue::try_from(trail.id.to_string()) {

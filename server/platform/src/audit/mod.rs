@@ -1,4 +1,4 @@
-//! Audit log: changes by anyone, and data of operators read by firms.
+//! Audit log: changes by anyone, data of operators read by firms, and refused sign-ins.
 //!
 //! Invariants:
 //!
@@ -13,11 +13,13 @@
 //! Batches of samples are excluded: they are a log themselves.
 
 mod middleware;
+mod refusal;
 mod request;
 mod store;
 mod trail;
 
 pub use middleware::{leave_out, log_request};
+pub use refusal::Refusal;
 pub use request::RequestContext;
 pub(crate) use store::{Selection, list};
 pub use trail::{Actor, FindVessel};
@@ -76,6 +78,12 @@ pub(crate) struct Line {
     /// disconnected, before it responded.
     #[schema(required)]
     status: Option<i64>,
+    /// E-mail address that was tried, of a refused sign-in.
+    #[schema(required)]
+    account: Option<String>,
+    /// Reason for which a sign-in, a code or a token was refused.
+    #[schema(required)]
+    refusal: Option<Refusal>,
 }
 
 /// Kind of actor.
@@ -91,6 +99,8 @@ pub(crate) enum ActorKind {
     Agent,
     /// Person at the server's own command line.
     Command,
+    /// Somebody who did not prove who they are.
+    Unidentified,
 }
 
 /// Filter of audit lines.
@@ -105,6 +115,10 @@ pub(crate) struct Filter {
     pub(crate) order: Option<OrderId>,
     /// Route, like `/api/v1/work-orders/{id}/model`.
     pub(crate) route: Option<String>,
+    /// Id of an API token.
+    pub(crate) token: Option<TokenId>,
+    /// `true` for refused sign-ins, codes and tokens alone.
+    pub(crate) refused: Option<bool>,
     /// First instant, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]
     pub(crate) from: Option<String>,

@@ -1,5 +1,6 @@
 //! Request context for handlers: it begins the transactions that carry the audit line.
 
+use super::refusal::{Refusal, Refused};
 use super::trail::{Actor, AuditTrail, Facts, FindVessel};
 use crate::db::{self, Db, Tx};
 use crate::error::{Error, Result};
@@ -37,6 +38,7 @@ impl RequestContext {
             id: Uuid::now_v7(),
             at: now,
             address: String::new(),
+            network: String::new(),
             method: String::new(),
             route: command.to_owned(),
             path: command.to_owned(),
@@ -68,6 +70,12 @@ impl RequestContext {
     /// Records the actor as soon as it is known.
     pub fn record_actor(&self, actor: impl Into<Actor>) {
         self.trail.facts().actor = Some(actor.into());
+    }
+
+    /// Records that a sign-in, a code or a token was refused, and the e-mail address that was
+    /// tried. This belongs before the transaction that counts the failure.
+    pub fn refuse(&self, why: Refusal, account: Option<&str>) {
+        self.trail.facts().refused = Some(Refused::new(why, account));
     }
 
     /// Records the tenant concerned, where the path does not identify it.

@@ -20,8 +20,8 @@ pub(super) async fn insert(tx: &mut Tx, line: &Line) -> Result<()> {
         tx,
         "INSERT INTO audit_lines (id, at, operator_id, firm_id, actor_kind, actor_id, actor_name,
                                   token_id, address, method, route, path, vessel_id, order_id,
-                                  status)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15)",
+                                  status, account, refusal)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17)",
         line.id,
         line.at,
         line.operator_id,
@@ -36,7 +36,9 @@ pub(super) async fn insert(tx: &mut Tx, line: &Line) -> Result<()> {
         line.path.as_str(),
         line.vessel_id,
         line.order_id,
-        line.status
+        line.status,
+        line.account.as_deref(),
+        line.refusal
     )?;
     Ok(())
 }
@@ -65,7 +67,7 @@ pub(crate) async fn list(
         db,
         Line,
         "SELECT id, at, actor_kind, actor_id, actor_name, token_id, operator_id, firm_id, address,
-                method, route, path, vessel_id, order_id, status
+                method, route, path, vessel_id, order_id, status, account, refusal
          FROM audit_lines
          WHERE ($1 IS NULL OR operator_id = $1) AND ($2 IS NULL OR firm_id = $2) AND id < $3
            AND ($4 IS NULL OR actor_id = $4)
@@ -74,8 +76,10 @@ pub(crate) async fn list(
            AND ($7 IS NULL OR route = $7)
            AND ($8 IS NULL OR at >= $8)
            AND ($9 IS NULL OR at < $9)
+           AND ($10 IS NULL OR token_id = $10)
+           AND ($11 IS NULL OR (refusal IS NOT NULL) = $11)
          ORDER BY id DESC
-         LIMIT $10",
+         LIMIT $12",
         selection.operator,
         selection.firm,
         before.unwrap_or(Uuid::max()),
@@ -85,6 +89,8 @@ pub(crate) async fn list(
         filter.route.as_deref(),
         selection.from,
         selection.to,
+        filter.token,
+        filter.refused,
         limit
     )
 }

@@ -1,14 +1,16 @@
 //! Facts of a request, gathered while it is served and then written as a line.
 
+use super::refusal::Refused;
 use super::{ActorKind, Line, store};
-use crate::db::{self, CommitHook, Db, Tx};
+use crate::app::App;
+use crate::db::{self, CommitHook, Tx};
 use crate::ids::{AgentId, OrderId, TokenId, UserId, VesselId};
 use crate::tenants::{OwnerOf, Tenant};
 use crate::time::Time;
 use axum::http::StatusCode;
 use futures_util::future::BoxFuture;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use tracing::error;
+use tracing::{error, warn};
 use uuid::Uuid;
 
 /// Function that finds the vessel of what a request is about.
@@ -66,10 +68,19 @@ impl Actor {
 
     /// Returns the actor for the server's own command line.
     pub(super) fn command_line() -> Actor {
+        Actor::without_id(ActorKind::Command, "command line")
+    }
+
+    /// Returns the actor for somebody who did not prove who they are.
+    fn unidentified() -> Actor {
+        Actor::without_id(ActorKind::Unidentified, "")
+    }
+
+    fn without_id(kind: ActorKind, name: &str) -> Actor {
         Actor {
-            kind: ActorKind::Command,
+            kind,
             id: None,
-            name: "command line".to_owned(),
+            name: name.to_owned(),
             token: None,
             tenant: None,
             vessel: None,
@@ -83,6 +94,8 @@ pub(super) struct AuditTrail {
     pub(super) id: Uuid,
     pub(super) at: Time,
     pub(super) address: String,
+    /// Network of the address, under which refusals are counted.
+    pub(super) network: String,
     pub(super) method: String,
     pub(super) route: String,
     pub(super) path: String,
@@ -98,6 +111,8 @@ pub(super) struct Facts {
     pub(super) about: Option<Uuid>,
     /// Lookup of the vessel, where only `about` is known.
     pub(super) find_vessel: Option<FindVessel>,
+    /// Refusal of a sign-in, a code or a token.
+    pub(super) refused: Option<Refused>,
     /// True if the request is logged as a change, in the transaction of the change.
     pub(super) is_change: bool,
     /// True if reads by a firm are logged.
@@ -106,13 +121,23 @@ pub(super) struct Facts {
     pub(super) is_written: bool,
 }
 
+impl Facts {
+    /// Returns true if a request of a known actor has a line though it changed nothing.
+    fn is_due_of(&self, actor: &Actor, status: StatusCode) -> bool {
+        let is_read =
+            status.is_success() && self.logs_firms && matches!(actor.tenant, Some(Tenant::Firm(_)));
+        let is_tried = self.is_change && status != StatusCode::METHOD_NOT_ALLOWED;
+        is_read || is_tried
+    }
+}
+
 impl CommitHook for AuditTrail {
-    /// Writes the line, if this is a change by a known actor and has no line yet.
+    /// Writes the line, if this is a change by a known actor or a refusal, and has no line yet.
     fn before_commit<'a>(&'a self, tx: &'a mut Tx) -> BoxFuture<'a, db::Result<bool>> {
         Box::pin(async move {
             let is_due = {
                 let facts = self.facts();
-                facts.is_change && !facts.is_written
+                (facts.is_change || facts.refused.is_some()) && !facts.is_written
             };
             if !is_due {
                 return Ok(false);
@@ -123,6 +148,10 @@ impl CommitHook for AuditTrail {
 
     fn committed(&self) {
         self.facts().is_written = true;
+    }
+
+    fn token(&self) -> Option<TokenId> {
+        self.facts().actor.as_ref().and_then(|actor| actor.token)
     }
 }
 
@@ -138,8 +167,11 @@ impl AuditTrail {
     }
 
     /// Records the status of the response. Returns true if there is a line.
-    pub(super) async fn finish(&self, db: &Db, status: StatusCode) -> db::Result<bool> {
-        let facts = self.facts().clone();
+    pub(super) async fn finish(&self, app: &App, status: StatusCode) -> db::Result<bool> {
+        let (db, facts) = (&app.db, self.facts().clone());
+        if let Some(refused) = &facts.refused {
+            self.log(refused);
+        }
         let code = i64::from(status.as_u16());
         if facts.is_written {
             // The line and the change are stored, so the response stands.
@@ -148,14 +180,15 @@ impl AuditTrail {
             }
             return Ok(true);
         }
-        let Some(actor) = facts.actor else {
-            return Ok(false);
+        let is_due = match (&facts.refused, &facts.actor) {
+            (Some(refused), _) => {
+                let now_s = u64::try_from(self.at.0.micros() / 1_000_000).unwrap_or(0);
+                refused.is_listed(&app.refusal_rates, &self.network, now_s)
+            }
+            (None, Some(actor)) => facts.is_due_of(actor, status),
+            (None, None) => false,
         };
-        let is_read = status.is_success()
-            && facts.logs_firms
-            && matches!(actor.tenant, Some(Tenant::Firm(_)));
-        let is_tried = facts.is_change && status != StatusCode::METHOD_NOT_ALLOWED;
-        if !(is_read || is_tried) {
+        if !is_due {
             return Ok(false);
         }
         let mut tx = db.begin().await?;
@@ -164,14 +197,33 @@ impl AuditTrail {
         Ok(written)
     }
 
-    /// Writes the line, if the actor is known. Without a status it records a completed
-    /// change.
+    /// Writes a refusal into the server's own log. The address comes before what a stranger wrote,
+    /// which is quoted.
+    fn log(&self, refused: &Refused) {
+        warn!(
+            target: "binnacle::refused",
+            refusal = refused.why.name(),
+            address = %self.address,
+            account = refused.account.as_deref().unwrap_or_default(),
+            route = self.route.as_str(),
+            request = %self.id,
+            "refused"
+        );
+    }
+
+    /// Writes the line, if the actor is known or was refused. Without a status it records a
+    /// completed change.
     async fn write(&self, tx: &mut Tx, status: Option<StatusCode>) -> db::Result<bool> {
         let facts = self.facts().clone();
-        let Some(actor) = facts.actor else {
+        let stranger = facts.refused.as_ref().map(|_| Actor::unidentified());
+        let Some(actor) = facts.actor.or(stranger) else {
             return Ok(false);
         };
-        let is_done = status.is_none_or(|status| status.is_success());
+        let is_done = facts.refused.is_none() && status.is_none_or(|status| status.is_success());
+        let tried = match &facts.refused {
+            Some(refused) => refused.tenant(tx).await?,
+            None => None,
+        };
         let named = facts.vessel.or(actor.vessel);
         let mut vessel = named.or(self.id_after("/api/v1/vessels/{id}").map(VesselId));
         // A refused request reveals nothing, and appears only in the caller's own log.
@@ -185,7 +237,7 @@ impl AuditTrail {
             }
         }
         let owner_id = owner.as_ref().map(|owner| owner.operator_id.0);
-        let (operator_id, firm_id) = match facts.tenant.or(actor.tenant) {
+        let (operator_id, firm_id) = match facts.tenant.or(actor.tenant).or(tried) {
             Some(Tenant::Operator(operator)) => (Some(operator.0), None),
             Some(Tenant::Firm(firm)) => (owner_id, Some(firm.0)),
             None => (
@@ -213,6 +265,8 @@ impl AuditTrail {
             vessel_id: vessel,
             order_id: facts.about.map(OrderId),
             status: status.map(|status| i64::from(status.as_u16())),
+            refusal: facts.refused.as_ref().map(|refused| refused.why),
+            account: facts.refused.and_then(|refused| refused.account),
         };
         store::insert(tx, &line).await?;
         Ok(true)

@@ -4,7 +4,7 @@ use crate::audit::Line;
 use crate::error::{Error, Result};
 
 /// Column names, the same as in JSON.
-const COLUMNS: [&str; 15] = [
+const COLUMNS: [&str; 17] = [
     "id",
     "at",
     "actor_kind",
@@ -20,6 +20,8 @@ const COLUMNS: [&str; 15] = [
     "vessel_id",
     "order_id",
     "status",
+    "account",
+    "refusal",
 ];
 
 /// Returns the header row.

@@ -45,9 +45,9 @@ struct AuditList {
 
 /// Read the audit log
 ///
-/// Returns every change made or tried, and the work-order data read by firms. An operator's
-/// admins see the actions of their people and agents, and those of firms on their vessels'
-/// orders. A firm's people see the actions in the firm's name. Platform admins see all.
+/// Returns every change made or tried, the work-order data read by firms, and refused sign-ins. An
+/// operator's admins see the actions of their people and agents, those of firms on their vessels'
+/// orders, and what was tried with their people's accounts. A firm's people see the actions in the firm's name. Platform admins see all.
 #[utoipa::path(get, path = "/audit", tag = "people", params(Filter, Page),
     responses((status = 200, body = AuditList), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem)))]

@@ -1,6 +1,8 @@
 //! Server settings: flags, or `BINNACLE_*` variables.
 
+use crate::db::{Db, Subscribers};
 use crate::outbound::Reach;
+use crate::sealing::Seals;
 use crate::tls::Certificate;
 use binnacle_listener::Limits;
 use clap::{Args, ValueEnum};
@@ -21,6 +23,31 @@ pub struct Database {
         hide_env_values = true
     )]
     pub database_url: String,
+    /// Key that seals secrets in the database, 64 hexadecimal digits; earlier keys, which only open,
+    /// follow after commas
+    #[arg(long, global = true, env = "BINNACLE_SECRETS_KEY", hide_env_values = true,
+          value_parser = Seals::parse)]
+    pub secrets_key: Option<Seals>,
+    /// File with these keys
+    #[arg(long, global = true, env = "BINNACLE_SECRETS_KEY_FILE", value_parser = read_seals,
+          conflicts_with = "secrets_key")]
+    pub secrets_key_file: Option<Seals>,
+}
+
+fn read_seals(file: &str) -> Result<Seals, String> {
+    Seals::read(file.as_ref())
+}
+
+impl Database {
+    /// Opens the database with its keys.
+    ///
+    /// # Errors
+    /// Fails when the database cannot be reached.
+    pub async fn open(&self, subscribers: Subscribers) -> anyhow::Result<Db> {
+        let seals = self.secrets_key.as_ref().or(self.secrets_key_file.as_ref());
+        let db = Db::connect(&self.database_url, subscribers).await?;
+        Ok(db.with_seals(seals.cloned().unwrap_or_default()))
+    }
 }
 
 /// Part of the service that a process runs. Processes with different parts share one database.
@@ -84,6 +111,10 @@ pub struct Serve {
     #[arg(long, env = "BINNACLE_SESSION_IDLE_HOURS", default_value_t = 24,
           value_parser = clap::value_parser!(u32).range(1..=8760))]
     pub session_idle_hours: u32,
+    /// Days that an API token lives at most; a year by default
+    #[arg(long, env = "BINNACLE_TOKEN_DAYS", default_value_t = 366,
+          value_parser = clap::value_parser!(u32).range(1..=36_500))]
+    pub token_days: u32,
     /// Number of your own proxies in front of the server; the client address is taken from
     /// the X-Forwarded-For entry of the outermost one
     #[arg(long, env = "BINNACLE_PROXIES", default_value_t = 0,
@@ -101,6 +132,10 @@ pub struct Serve {
     #[arg(long, env = "BINNACLE_REQUESTS_PER_MINUTE", default_value_t = 6000,
           value_parser = clap::value_parser!(u32).range(1..))]
     pub requests_per_minute: u32,
+    /// Batches that a vessel may upload in a day (UTC), to this process
+    #[arg(long, env = "BINNACLE_UPLOADS_PER_DAY", default_value_t = 10_000,
+          value_parser = clap::value_parser!(u32).range(1..))]
+    pub uploads_per_day: u32,
     /// Retention of the audit log in days
     #[arg(long, env = "BINNACLE_AUDIT_DAYS", default_value_t = 1095,
           value_parser = clap::value_parser!(u32).range(1..=36_500))]

@@ -1,6 +1,8 @@
 //! Database connections by URL, and schema migrations.
 
+use super::file::{Claim, damaged, is_damage, make_private};
 use super::{Db, Pools, Subscribers, Workload};
+use crate::sealing::Seals;
 use anyhow::{Context, bail};
 use sqlx::migrate::{MigrateError, Migrator};
 use sqlx::pool::PoolOptions;
@@ -37,14 +39,44 @@ impl Db {
             pools: Arc::new(pools),
             workload: Workload::Background,
             subscribers: Arc::new(subscribers),
+            seals: Seals::default(),
         })
     }
 
-    /// Applies pending migrations.
+    /// Applies pending migrations. Of processes that do so at once, one does and the others wait.
     ///
     /// # Errors
-    /// Fails when one fails, or an applied one is unknown or has been edited since.
+    /// Fails when one fails, an applied one is unknown or has been edited since, or a server of
+    /// another version serves the SQLite file.
     pub async fn migrate(&self) -> anyhow::Result<()> {
+        if self.is_up_to_date().await {
+            return self.run_migrations().await;
+        }
+        let claim = self.claim_to_migrate().await?;
+        self.migrate_claimed(&claim).await
+    }
+
+    /// Applies pending migrations of a database that this process has claimed.
+    ///
+    /// # Errors
+    /// As for [`Db::migrate`].
+    pub async fn migrate_claimed(&self, _: &Claim) -> anyhow::Result<()> {
+        self.run_migrations().await
+    }
+
+    /// Returns true if the newest migration was applied to a SQLite file. sqlx itself has a lock for
+    /// PostgreSQL alone.
+    async fn is_up_to_date(&self) -> bool {
+        let Pools::Sqlite { writer, .. } = self.pools() else {
+            return true;
+        };
+        let newest = PORTABLE.iter().map(|migration| migration.version).max();
+        let applied = sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations WHERE success");
+        let applied: Result<Option<i64>, sqlx::Error> = applied.fetch_one(writer).await;
+        applied.is_ok_and(|applied| applied >= newest)
+    }
+
+    async fn run_migrations(&self) -> anyhow::Result<()> {
         let migrated = match self.pools() {
             Pools::Sqlite { writer, .. } => PORTABLE.run(writer).await,
             Pools::Postgres(pool) => {
@@ -88,10 +120,15 @@ async fn connect_sqlite(url: &str) -> anyhow::Result<[Pools; 3]> {
         // An acknowledged write survives a power cut, not only a crash.
         .synchronous(SqliteSynchronous::Full)
         .busy_timeout(BUSY_TIMEOUT);
-    let writer = pool(1, BUSY_TIMEOUT)
-        .connect_with(options.clone())
-        .await
-        .with_context(|| format!("cannot open {url}"))?;
+    make_private(options.get_filename())?;
+    let opened = pool(1, BUSY_TIMEOUT).connect_with(options.clone()).await;
+    let writer = opened.map_err(|error| {
+        if is_damage(&error) {
+            damaged(options.get_filename(), error)
+        } else {
+            anyhow::Error::new(error).context(format!("cannot open {url}"))
+        }
+    })?;
     let options = options.pragma("query_only", "ON");
     Ok(Workload::ALL.map(|workload| Pools::Sqlite {
         readers: pool(workload.readers(), workload.patience_on_sqlite())

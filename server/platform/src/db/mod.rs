@@ -15,15 +15,19 @@
 //! and `execute!`.
 
 mod connect;
+mod file;
 mod queries;
 mod subscribers;
 mod workload;
 
 pub use crate::{execute, row, rows};
+pub use file::Claim;
 pub use subscribers::{Answerer, DomainEvent, Handler, Question, Subscribers};
 pub use workload::{Usage, Workload};
 
 use crate::error;
+use crate::ids::TokenId;
+use crate::sealing::Seals;
 use futures_util::future::BoxFuture;
 use metrics::histogram;
 use sqlx::{Database, PgPool, Pool, Postgres, Sqlite, SqlitePool, Transaction};
@@ -42,6 +46,7 @@ pub struct Db {
     pools: Arc<[Pools; 3]>,
     workload: Workload,
     subscribers: Arc<Subscribers>,
+    seals: Seals,
 }
 
 /// Connection pools of the database.
@@ -62,6 +67,7 @@ pub enum Pools {
 pub struct Tx {
     connection: Connection,
     subscribers: Arc<Subscribers>,
+    seals: Seals,
     hook: Option<Arc<dyn CommitHook>>,
 }
 
@@ -84,6 +90,9 @@ pub trait CommitHook: Send + Sync {
 
     /// Records that the written data is on disk.
     fn committed(&self);
+
+    /// Returns the API token of the program that works, if it is one.
+    fn token(&self) -> Option<TokenId>;
 }
 
 impl Db {
@@ -99,6 +108,17 @@ impl Db {
             workload,
             ..self.clone()
         }
+    }
+
+    /// Sets the keys by which secrets are sealed.
+    #[must_use]
+    pub fn with_seals(self, seals: Seals) -> Db {
+        Db { seals, ..self }
+    }
+
+    /// Returns the keys by which secrets are sealed.
+    pub fn seals(&self) -> &Seals {
+        &self.seals
     }
 
     /// Returns the connections of each workload; on SQLite its readers.
@@ -130,6 +150,7 @@ impl Db {
         Ok(Tx {
             connection,
             subscribers: Arc::clone(&self.subscribers),
+            seals: self.seals.clone(),
             hook: None,
         })
     }
@@ -187,6 +208,11 @@ impl Tx {
         }
     }
 
+    /// Returns the keys by which secrets are sealed.
+    pub fn seals(&self) -> &Seals {
+        &self.seals
+    }
+
     /// Publishes an event: each subscriber runs now, in this transaction.
     ///
     /// # Errors
@@ -209,6 +235,11 @@ impl Tx {
             return Err(sqlx::Error::Protocol(format!("{name} has no handler")));
         };
         answerer(self, question).await
+    }
+
+    /// Returns the API token of the program that writes, if it is one.
+    pub fn token(&self) -> Option<TokenId> {
+        self.hook.as_ref().and_then(|hook| hook.token())
     }
 
     /// Returns the connection on which the statements of this transaction run.

@@ -75,6 +75,8 @@ pub fn text(field: &'static str, value: &str) -> Result<String> {
         "is longer than 200 characters"
     } else if value.chars().any(is_control) {
         "has control characters, or characters that change the direction of writing"
+    } else if value.chars().any(is_invisible) {
+        "has characters that cannot be seen"
     } else {
         return Ok(value.to_owned());
     };
@@ -91,6 +93,15 @@ pub fn is_control(c: char) -> bool {
     let turns = matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}'
                             | '\u{2066}'..='\u{2069}');
     turns || c.is_control() || matches!(c, '\u{2028}' | '\u{2029}')
+}
+
+/// Checks for a character that takes no place or looks like a blank, and so makes two names look
+/// alike (Unicode Standard, section 23.2; Default_Ignorable_Code_Point).
+fn is_invisible(c: char) -> bool {
+    matches!(c, '\u{ad}' | '\u{34f}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}'
+                | '\u{180b}'..='\u{180f}' | '\u{200b}'..='\u{200d}' | '\u{2060}'..='\u{206f}'
+                | '\u{2800}' | '\u{3164}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{ffa0}'
+                | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e0fff}')
 }
 
 /// Checks an optional text as [`text`] does; blank text counts as absent.
@@ -138,4 +149,30 @@ pub fn degrees(field: &'static str, value: f64, low: f64, high: f64) -> Result<f
         field,
         detail: format!("{value} is outside {low} to {high}"),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_with_characters_that_cannot_be_seen_is_refused() {
+        for seen in ["Nao Victoria", "Šibenik", "ἀργώ", "新しい船", "Ærø 2"] {
+            assert_eq!(text("name", seen).unwrap(), seen);
+        }
+        for hidden in [
+            "Nao\u{200b}Victoria",
+            "Nao\u{feff}",
+            "\u{2060}Nao",
+            "Na\u{ad}o",
+            "\u{3164}",
+            "\u{2800}",
+            "Nao\u{e0041}",
+            "Nao\u{202e}",
+            "Nao\nVictoria",
+            "  ",
+        ] {
+            assert!(text("name", hidden).is_err(), "{hidden:?}");
+        }
+    }
 }

@@ -4,6 +4,7 @@ mod amended;
 pub mod cross_site;
 mod file;
 pub mod headers;
+pub mod host;
 mod json;
 mod page;
 mod rejections;

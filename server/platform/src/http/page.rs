@@ -113,7 +113,7 @@ impl Page {
 
     /// Returns the maximum number of items on a page.
     pub fn limit(&self) -> usize {
-        self.limit.unwrap_or(DEFAULT_LIMIT).clamp(1, MAX_LIMIT) as usize
+        self.limit.unwrap_or(DEFAULT_LIMIT) as usize
     }
 
     /// Returns the number of rows to fetch: one extra row shows that a next page exists.
@@ -138,7 +138,14 @@ impl<S: Send + Sync> FromRequestParts<S> for Page {
     type Rejection = Error;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Page> {
-        let query = axum::extract::Query::from_request_parts(parts, state).await?;
-        Ok(query.0)
+        let axum::extract::Query(page): axum::extract::Query<Page> =
+            axum::extract::Query::from_request_parts(parts, state).await?;
+        if !(1..=MAX_LIMIT as usize).contains(&page.limit()) {
+            return Err(Error::Invalid {
+                field: "limit",
+                detail: format!("{} is outside 1 to {MAX_LIMIT}", page.limit()),
+            });
+        }
+        Ok(page)
     }
 }

@@ -5,12 +5,11 @@ use super::claims::{self, Identity};
 use super::refusal::Refusal;
 use super::store::{self, BoundUser};
 use crate::app::App;
-use crate::audit::RequestContext;
-use crate::client_address::Origin;
+use crate::audit::{self, RequestContext};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Params, Valid};
 use crate::session::throttle::{self, Subjects};
-use crate::session::{self, User, normal_email};
+use crate::session::{self, User, Visitor, normal_email};
 use crate::time::Time;
 use crate::{second_factor, secret};
 use axum::extract::{FromRef, State};
@@ -111,7 +110,7 @@ async fn go_to_provider(State(app): State<App>) -> Result<(StatusCode, HeaderMap
 async fn return_from_provider(
     State(app): State<App>,
     request: RequestContext,
-    from: Origin,
+    visitor: Visitor,
     headers: HeaderMap,
     Params(query): Params<CallbackQuery>,
 ) -> Result<(StatusCode, HeaderMap)> {
@@ -119,7 +118,7 @@ async fn return_from_provider(
     request.log_as_change();
     must_be_set_up(&app)?;
     Ok(
-        match conclude(&app, &request, &from, &headers, query).await {
+        match conclude(&app, &request, &visitor, &headers, query).await {
             Ok(done) => done,
             Err(refusal) => {
                 info!(why = refusal.word(), "nobody was signed in by the provider");
@@ -140,7 +139,7 @@ async fn return_from_provider(
 async fn send_code(
     State(app): State<App>,
     request: RequestContext,
-    from: Origin,
+    visitor: Visitor,
     headers: HeaderMap,
     Valid(sent): Valid<Code>,
 ) -> Result<(HeaderMap, Json<User>)> {
@@ -150,18 +149,18 @@ async fn send_code(
     let user = store::awaited(&app.db, &state, now.into()).await?;
     let user = user.ok_or(OVER)?;
     request.record_actor(&user);
-    let subjects = Subjects::person(&user.email, &from);
+    let subjects = Subjects::person(&app.db, &user.email, &visitor).await?;
     // As with passwords, simultaneous guesses must not escape the count.
     let _permit = app.hashing.acquire().await?;
-    throttle::check(&app.db, &subjects, now).await?;
+    throttle::check(&request, &subjects, now).await?;
     if !second_factor::use_code(&request, user.user_id, &sent.code, now).await? {
-        throttle::note_failure(&request, &subjects, now).await?;
+        throttle::note_failure(&request, &subjects, audit::Refusal::WrongCode, now).await?;
         return Err(Error::WrongCode);
     }
     if !store::take_awaited(&request, &state).await? {
         return Err(OVER);
     }
-    let mut cookies = open(&app, &request, &from, &user).await?;
+    let mut cookies = open(&app, &request, &visitor, &user).await?;
     cookies.append(SET_COOKIE, attempt::clear_cookie(&app.config));
     Ok((cookies, Json(user)))
 }
@@ -180,7 +179,7 @@ type Concluded = std::result::Result<(StatusCode, HeaderMap), Refusal>;
 async fn conclude(
     app: &App,
     request: &RequestContext,
-    from: &Origin,
+    visitor: &Visitor,
     headers: &HeaderMap,
     query: CallbackQuery,
 ) -> Concluded {
@@ -191,8 +190,8 @@ async fn conclude(
         return Err(Refusal::Over);
     }
     let now = app.clock.now();
-    let subjects = Subjects::address(from);
-    throttle::check(&app.db, &subjects, now).await?;
+    let subjects = Subjects::address(&visitor.from);
+    throttle::check(request, &subjects, now).await?;
     let until = Timestamp::from_micros(attempt.ends_s() * 1_000_000).unwrap_or(now);
     if !store::note_return(request, &attempt.state_hash(), now.into(), until.into()).await? {
         return Err(Refusal::Over);
@@ -204,7 +203,7 @@ async fn conclude(
         Ok(user) => user,
         Err(refusal) => {
             if refusal.counts() {
-                throttle::note_failure(request, &subjects, now).await?;
+                throttle::note_failure(request, &subjects, audit::Refusal::Provider, now).await?;
             }
             return Err(refusal);
         }
@@ -213,7 +212,7 @@ async fn conclude(
         store::await_code(request, &attempt.state_hash(), user.user_id).await?;
         return Ok(redirect(&format!("{SIGN_IN_PAGE}code"), []));
     }
-    let mut cookies = open(app, request, from, &user).await?;
+    let mut cookies = open(app, request, visitor, &user).await?;
     cookies.append(SET_COOKIE, attempt::clear_cookie(&app.config));
     cookies.insert(LOCATION, HeaderValue::from_static("/"));
     Ok((StatusCode::SEE_OTHER, cookies))
@@ -277,10 +276,17 @@ async fn bind_first_sign_in(
 async fn open(
     app: &App,
     request: &RequestContext,
-    from: &Origin,
+    visitor: &Visitor,
     user: &User,
 ) -> Result<HeaderMap> {
-    session::open(app, request, from, user, Some(&app.config.oidc.oidc_name)).await
+    session::open(
+        app,
+        request,
+        visitor,
+        user,
+        Some(&app.config.oidc.oidc_name),
+    )
+    .await
 }
 
 /// Redirects to the sign-in page, which shows the reason.

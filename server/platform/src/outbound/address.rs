@@ -15,6 +15,26 @@ pub fn is_public(address: IpAddr) -> bool {
     }
 }
 
+/// Checks whether a name may belong to the public internet, as far as it shows: it has several labels,
+/// and none of the ends that are reserved for a machine or its network (RFC 6761, section 6; RFC
+/// 6762, section 3; RFC 8375; ICANN resolution 2024.07.29.06).
+pub(super) fn may_be_public(name: &str) -> bool {
+    const LOCAL: &[&str] = &[
+        "localhost",
+        "local",
+        "internal",
+        "test",
+        "invalid",
+        "home.arpa",
+    ];
+    let name = name.trim_end_matches('.').to_ascii_lowercase();
+    let ends_locally = |end: &&str| {
+        let before = name.strip_suffix(*end);
+        before.is_some_and(|before| before.is_empty() || before.ends_with('.'))
+    };
+    name.contains('.') && !LOCAL.iter().any(|end| ends_locally(&end))
+}
+
 fn is_public_v4(address: Ipv4Addr) -> bool {
     let [a, b, c, _] = u32::from(address).to_be_bytes();
     let special = matches!(

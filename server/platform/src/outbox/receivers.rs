@@ -15,16 +15,18 @@ pub async fn insert(
     channel: Channel,
     enabled: bool,
 ) -> DbResult<()> {
-    let tenant = tenant.into();
+    let (tenant, by) = (tenant.into(), tx.token());
     execute!(
         tx,
-        "INSERT INTO receivers (id, operator_id, firm_id, channel, enabled, last_number)
-         VALUES ($1, $2, $3, $4, $5, 0)",
+        "INSERT INTO receivers (id, operator_id, firm_id, channel, enabled, last_number,
+                                made_by_token)
+         VALUES ($1, $2, $3, $4, $5, 0, $6)",
         id,
         tenant.operator(),
         tenant.firm(),
         channel,
-        enabled
+        enabled,
+        by
     )?;
     Ok(())
 }

@@ -2,21 +2,31 @@
 //! characters. They are neither common nor easily guessed for this person. No mix of
 //! character classes is required, and no password expires.
 
-mod common;
 mod hashing;
 
 pub use hashing::{Hashing, Permit};
 
 use crate::error::{Error, Result};
+use zxcvbn::{Score, zxcvbn};
 
 /// Minimum length, characters.
 pub const MIN_LENGTH: usize = 12;
 /// Maximum length, bytes: Argon2 accepts any length, but nobody types more.
 pub const MAX_BYTES: usize = 1024;
-/// Minimum number of characters left after all easily guessed parts are removed.
-const MIN_UNGUESSED: usize = 6;
-/// Minimum length of a word that counts as easily guessed.
-const MIN_WORD: usize = 4;
+/// Lowest accepted strength: more than 10⁸ guesses. Wheeler, "zxcvbn: Low-Budget Password Strength
+/// Estimation", USENIX Security 2016.
+const LEAST_SCORE: Score = Score::Three;
+/// Words of the trade and of this product, which are tried first here.
+const OWN_WORDS: &[&str] = &[
+    "binnacle",
+    "compass",
+    "deviation",
+    "captain",
+    "vessel",
+    "fleet",
+    "maritime",
+    "shipping",
+];
 
 /// Refuses a password that is short or easily guessed. `about` is known of the user: e-mail,
 /// name, company.
@@ -31,7 +41,7 @@ pub fn check(field: &'static str, password: &str, about: &[&str]) -> Result<()> 
     if password.len() > MAX_BYTES {
         return wrong(format!("is longer than {MAX_BYTES} bytes"));
     }
-    if count_unguessed(password, about) < MIN_UNGUESSED {
+    if is_guessable(password, about) {
         return wrong(
             "is easily guessed: it is little more than a common word, a row of keys, \
              or the e-mail, name or company"
@@ -41,32 +51,19 @@ pub fn check(field: &'static str, password: &str, about: &[&str]) -> Result<()> 
     Ok(())
 }
 
-/// Returns the number of characters that remain for an attacker who knows common words, rows of
-/// letters and these names.
-fn count_unguessed(password: &str, about: &[&str]) -> usize {
-    let mut rest = password.to_lowercase();
-    let about: Vec<String> = about.iter().map(|text| text.to_lowercase()).collect();
-    let squeezed: Vec<String> = about.iter().map(|text| text.replace(' ', "")).collect();
-    let whole = about.iter().chain(&squeezed).map(String::as_str);
+/// Checks whether someone who knows common passwords, words, rows of keys and the user would need
+/// few guesses.
+fn is_guessable(password: &str, about: &[&str]) -> bool {
+    let squeezed = about.iter().map(|text| text.replace(' ', ""));
     let parts = about
         .iter()
-        .flat_map(|text| text.split(|letter: char| !letter.is_alphanumeric()));
-    let mut words: Vec<&str> = whole
-        .chain(parts)
-        .chain(common::WORDS.iter().copied())
-        .collect();
-    words.retain(|word| word.chars().count() >= MIN_WORD);
-    words.sort_by_key(|word| std::cmp::Reverse(word.len()));
-    for word in words {
-        rest = rest.replace(word, " ");
-    }
-    let letters: Vec<char> = rest
-        .chars()
-        .filter(|letter| !letter.is_whitespace())
-        .collect();
-    let goes_on = |pair: &[char]| u32::from(pair[0]).abs_diff(u32::from(pair[1])) <= 1;
-    let rows = letters.windows(2).filter(|pair| goes_on(pair)).count();
-    letters.len() - rows
+        .flat_map(|text| text.split(|letter: char| !letter.is_alphanumeric()))
+        .map(str::to_owned);
+    let whole = about.iter().map(|text| (*text).to_owned());
+    let own = OWN_WORDS.iter().map(|word| (*word).to_owned());
+    let known: Vec<String> = whole.chain(squeezed).chain(parts).chain(own).collect();
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    zxcvbn(password, &known).score() < LEAST_SCORE
 }
 
 #[cfg(test)]
@@ -95,6 +92,16 @@ mod tests {
             "northernstarlines",
             "Binnacle-2026",
             "welcomewelcome!",
+            "iloveyou1234",
+            "Password123!",
+            "qwerty123456",
+            "1234567890ab",
+            "letmein12345",
+            "administrator",
+            "P@ssw0rd1234",
+            "trustno1trustno1",
+            "captain-compass",
+            "zxcvbnm,./123",
         ] {
             let refused = check("password", weak, &ABOUT);
             assert!(

@@ -8,7 +8,7 @@
 mod store;
 pub(crate) mod totp;
 
-pub(crate) use store::{begin, confirm, set_recovery_codes};
+pub(crate) use store::{begin, confirm, reseal, set_recovery_codes};
 
 use crate::audit::RequestContext;
 use crate::db::Tx;
@@ -29,7 +29,10 @@ pub async fn use_code(
     let mut tx = request.begin().await?;
     let used = store::use_code(&mut tx, user, code, now).await?
         || store::use_recovery_code(&mut tx, user, code).await?;
-    tx.commit().await?;
+    // A wrong code changes nothing; its failure is counted, and audited, by the caller.
+    if used {
+        tx.commit().await?;
+    }
     Ok(used)
 }
 

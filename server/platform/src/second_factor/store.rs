@@ -2,8 +2,9 @@
 
 use super::totp;
 use crate::audit::RequestContext;
-use crate::db::{Result, Tx, execute, row};
+use crate::db::{Result, Tx, execute, row, rows};
 use crate::ids::UserId;
+use crate::sealing::StoredSecret;
 use crate::secret;
 use crate::time::Time;
 use binnacle_compass::time::Timestamp;
@@ -14,7 +15,13 @@ const NEVER: i64 = -1;
 #[derive(sqlx::FromRow)]
 struct Factor {
     secret: Vec<u8>,
+    sealed_by: Option<String>,
     last_step: i64,
+}
+
+/// Returns the name of a user's factor, to which its seal is bound.
+fn row_of(user: UserId) -> String {
+    format!("second factor of {user}")
 }
 
 /// Stores an unconfirmed secret in place of any other unconfirmed one; false when a confirmed
@@ -26,15 +33,18 @@ pub(crate) async fn begin(
     now: Time,
 ) -> Result<bool> {
     let mut tx = request.begin().await?;
+    let stored = tx.seals().seal(&row_of(user), secret);
     let kept = execute!(
         &mut tx,
-        "INSERT INTO second_factors (user_id, secret, created_at, confirmed_at, last_step)
-         VALUES ($1, $2, $3, NULL, $4)
+        "INSERT INTO second_factors (user_id, secret, sealed_by, created_at, confirmed_at, last_step)
+         VALUES ($1, $2, $3, $4, NULL, $5)
          ON CONFLICT (user_id) DO UPDATE
-         SET secret = excluded.secret, created_at = excluded.created_at
+         SET secret = excluded.secret, sealed_by = excluded.sealed_by,
+             created_at = excluded.created_at
          WHERE second_factors.confirmed_at IS NULL",
         user,
-        secret,
+        stored.bytes,
+        stored.sealed_by,
         now,
         NEVER
     )?;
@@ -67,11 +77,21 @@ pub(super) async fn use_code(
     let factor = row!(
         in &mut *tx,
         Factor,
-        "SELECT secret, last_step FROM second_factors WHERE user_id = $1 ORDER BY user_id",
+        "SELECT secret, sealed_by, last_step FROM second_factors
+         WHERE user_id = $1 ORDER BY user_id",
         user
     )?;
-    let step = factor.and_then(|factor| totp::step_of(&factor.secret, code, factor.last_step, now));
-    let Some(step) = step else {
+    let Some(Factor {
+        secret: bytes,
+        sealed_by,
+        last_step,
+    }) = factor
+    else {
+        return Ok(false);
+    };
+    let stored = StoredSecret { bytes, sealed_by };
+    let secret = tx.seals().open(&row_of(user), &stored)?;
+    let Some(step) = totp::step_of(&secret, code, last_step, now) else {
         return Ok(false);
     };
     let used = execute!(
@@ -81,6 +101,32 @@ pub(super) async fn use_code(
         step
     )?;
     Ok(used > 0)
+}
+
+/// Seals the secrets that the present key has not sealed, and returns their number.
+pub(crate) async fn reseal(tx: &mut Tx) -> Result<u64> {
+    let current = tx.seals().current().map(str::to_owned);
+    let found = rows!(
+        in &mut *tx,
+        (UserId, Vec<u8>, Option<String>),
+        "SELECT user_id, secret, sealed_by FROM second_factors
+         WHERE COALESCE(sealed_by, '') <> COALESCE($1, '') ORDER BY user_id",
+        current
+    )?;
+    let mut sealed = 0;
+    for (user, bytes, sealed_by) in found {
+        let row = row_of(user);
+        let secret = tx.seals().open(&row, &StoredSecret { bytes, sealed_by })?;
+        let stored = tx.seals().seal(&row, &secret);
+        sealed += execute!(
+            &mut *tx,
+            "UPDATE second_factors SET secret = $2, sealed_by = $3 WHERE user_id = $1",
+            user,
+            stored.bytes,
+            stored.sealed_by
+        )?;
+    }
+    Ok(sealed)
 }
 
 /// Uses up a recovery code.

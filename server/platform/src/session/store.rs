@@ -146,23 +146,17 @@ pub(super) struct NewSession<'a> {
     pub(super) expires_at: Time,
 }
 
-/// Opens a session. Deletes expired sessions and the failed attempts of the e-mail address.
+/// Opens a session, and deletes expired ones.
 pub(super) async fn open(
-    request: &RequestContext,
+    tx: &mut Tx,
     user: &User,
     from: &Origin,
     new: &NewSession<'_>,
 ) -> Result<()> {
     let now = new.now;
-    let mut tx = request.begin().await?;
-    execute!(&mut tx, "DELETE FROM sessions WHERE expires_at <= $1", now)?;
+    execute!(&mut *tx, "DELETE FROM sessions WHERE expires_at <= $1", now)?;
     execute!(
-        &mut tx,
-        "DELETE FROM login_failures WHERE subject_hash = $1",
-        secret::hash(&user.email)
-    )?;
-    execute!(
-        &mut tx,
+        tx,
         "INSERT INTO sessions (id, user_id, token_hash, created_at, last_seen_at, expires_at,
                                address, user_agent, provider)
          VALUES ($1, $2, $3, $4, $4, $5, $6, $7, $8)",
@@ -175,7 +169,7 @@ pub(super) async fn open(
         from.program.as_str(),
         new.provider
     )?;
-    tx.commit().await
+    Ok(())
 }
 
 pub(crate) async fn list(

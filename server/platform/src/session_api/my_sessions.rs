@@ -3,7 +3,6 @@
 use crate::access::Caller;
 use crate::app::App;
 use crate::audit::RequestContext;
-use crate::client_address::Origin;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Listed, Page, Valid};
 use crate::ids::SessionId;
@@ -79,7 +78,7 @@ async fn end_session(
     caller: Caller,
     Id(id): Id<SessionId>,
 ) -> Result<StatusCode> {
-    caller.must_not_only_read()?;
+    caller.must_be_signed_in()?;
     if !session::end(&request, caller.user.user_id, id).await? {
         return Err(Error::NotFound("session"));
     }
@@ -90,9 +89,9 @@ async fn end_session(
 #[utoipa::path(delete, path = "/sessions", tag = "session",
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem)))]
 async fn end_other_sessions(request: RequestContext, caller: Caller) -> Result<StatusCode> {
-    caller.must_not_only_read()?;
+    let session = caller.must_be_signed_in()?;
     let mut tx = request.begin().await?;
-    session::end_all(&mut tx, caller.user.user_id, caller.session).await?;
+    session::end_all(&mut tx, caller.user.user_id, Some(session)).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }
@@ -107,7 +106,6 @@ async fn change_password(
     State(app): State<App>,
     request: RequestContext,
     caller: Caller,
-    from: Origin,
     Valid(change): Valid<ChangedPassword>,
 ) -> Result<StatusCode> {
     let session = caller.must_be_signed_in()?;
@@ -116,7 +114,7 @@ async fn change_password(
     let about = [&user.email, &user.name, company.unwrap_or(&user.name)];
     password::check("new", &change.new, &about.map(String::as_str))?;
     let is_the_same = change.new == change.current;
-    session::confirm_password(&app, &request, user, &from, change.current).await?;
+    session::confirm_password(&app, &request, user, session, change.current).await?;
     if is_the_same {
         return Err(Error::Invalid {
             field: "new",

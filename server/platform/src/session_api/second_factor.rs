@@ -3,7 +3,6 @@
 use crate::access::Caller;
 use crate::app::App;
 use crate::audit::RequestContext;
-use crate::client_address::Origin;
 use crate::db::Tx;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Valid};
@@ -85,11 +84,10 @@ async fn begin_second_factor(
     State(app): State<App>,
     request: RequestContext,
     caller: Caller,
-    from: Origin,
     Valid(confirmation): Valid<PasswordConfirmation>,
 ) -> Result<(StatusCode, Json<NewSecret>)> {
-    caller.must_be_signed_in()?;
-    session::confirm_password(&app, &request, &caller.user, &from, confirmation.password).await?;
+    let session = caller.must_be_signed_in()?;
+    session::confirm_password(&app, &request, &caller.user, session, confirmation.password).await?;
     let user = &caller.user;
     let secret: [u8; totp::SECRET_BYTES] = secret::random();
     let now = app.clock.now().into();
@@ -145,11 +143,10 @@ async fn remove_second_factor(
     State(app): State<App>,
     request: RequestContext,
     caller: Caller,
-    from: Origin,
     Valid(confirmation): Valid<PasswordConfirmation>,
 ) -> Result<StatusCode> {
-    caller.must_be_signed_in()?;
-    session::confirm_password(&app, &request, &caller.user, &from, confirmation.password).await?;
+    let session = caller.must_be_signed_in()?;
+    session::confirm_password(&app, &request, &caller.user, session, confirmation.password).await?;
     let mut tx = request.begin().await?;
     if !second_factor::remove(&mut tx, caller.user.user_id).await? {
         return Err(Error::NotFound("second factor"));
@@ -170,11 +167,10 @@ async fn renew_recovery_codes(
     State(app): State<App>,
     request: RequestContext,
     caller: Caller,
-    from: Origin,
     Valid(confirmation): Valid<PasswordConfirmation>,
 ) -> Result<Json<RecoveryCodes>> {
-    caller.must_be_signed_in()?;
-    session::confirm_password(&app, &request, &caller.user, &from, confirmation.password).await?;
+    let session = caller.must_be_signed_in()?;
+    session::confirm_password(&app, &request, &caller.user, session, confirmation.password).await?;
     if !caller.user.second_factor {
         return Err(Error::NotFound("second factor"));
     }

@@ -2,13 +2,12 @@
 
 use crate::access::Caller;
 use crate::app::App;
-use crate::audit::RequestContext;
-use crate::client_address::Origin;
+use crate::audit::{Refusal, RequestContext};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Valid};
 use crate::second_factor;
 use crate::session::throttle::{self, Subjects};
-use crate::session::{self, User, cookie, normal_email};
+use crate::session::{self, User, Visitor, cookie, normal_email};
 use axum::extract::{FromRef, State};
 use axum::http::{HeaderMap, StatusCode};
 use serde::Deserialize;
@@ -44,18 +43,19 @@ struct SignIn {
 /// The response sets a session cookie. A user with a second factor who sends no code gets
 /// `second-factor-needed` if the password is right, and repeats the request with the code.
 /// After five wrong passwords or codes for an e-mail address, each further attempt has to wait,
-/// longer every time. The same holds after fifty from one network address.
+/// longer every time. The same holds after fifty from one network address. A browser in which the
+/// user signed in before, which a second cookie tells, is counted by itself.
 #[utoipa::path(post, path = "/session", tag = "session", request_body = SignIn, security(()),
     responses((status = 200, body = User), (status = 401, body = Problem), (status = 429, body = Problem)))]
 async fn sign_in(
     State(app): State<App>,
     request: RequestContext,
-    from: Origin,
+    visitor: Visitor,
     Valid(given): Valid<SignIn>,
 ) -> Result<(HeaderMap, Json<User>)> {
-    let user = authenticate(&app, &request, &from, given).await?;
+    let user = authenticate(&app, &request, &visitor, given).await?;
     Ok((
-        session::open(&app, &request, &from, &user, None).await?,
+        session::open(&app, &request, &visitor, &user, None).await?,
         Json(user),
     ))
 }
@@ -87,15 +87,17 @@ async fn me(caller: Caller) -> Json<User> {
 async fn authenticate(
     app: &App,
     request: &RequestContext,
-    from: &Origin,
+    visitor: &Visitor,
     given: SignIn,
 ) -> Result<User> {
     // PostgreSQL accepts no NUL in a text, and nobody has such an e-mail address.
     if given.email.chars().any(char::is_control) {
+        request.refuse(Refusal::WrongPassword, None);
         return Err(Error::WrongPassword);
     }
     let email = normal_email(&given.email);
-    let user = session::check_password(app, request, from, &email, given.password).await?;
+    let subjects = Subjects::person(&app.db, &email, visitor).await?;
+    let user = session::check_password(app, request, &subjects, &email, given.password).await?;
     request.record_actor(&user);
     if !user.second_factor {
         return Ok(user);
@@ -106,6 +108,6 @@ async fn authenticate(
     if second_factor::use_code(request, user.user_id, &code, now).await? {
         return Ok(user);
     }
-    throttle::note_failure(request, &Subjects::person(&email, from), now).await?;
+    throttle::note_failure(request, &subjects, Refusal::WrongCode, now).await?;
     Err(Error::WrongCode)
 }

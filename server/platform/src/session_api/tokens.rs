@@ -4,7 +4,7 @@ use crate::access::Caller;
 use crate::app::App;
 use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
-use crate::http::{Id, Json, Listed, Page, Valid};
+use crate::http::{Id, Json, Listed, Page, Params, Valid};
 use crate::idempotency::{self, Key};
 use crate::ids::TokenId;
 use crate::secret;
@@ -12,8 +12,9 @@ use crate::time::Time;
 use crate::tokens::{self, PREFIX, Scope, Token};
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
+use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -36,8 +37,17 @@ struct NewToken {
     name: String,
     /// Scope of the token.
     scope: Scope,
-    /// Expiry time; one year from now by default.
+    /// Expiry time, at most a year from now unless the server is set up otherwise; one year from now
+    /// by default.
     expires_at: Option<Time>,
+}
+
+/// Extent of a revocation.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+struct Revocation {
+    /// `true` to remove what was made with the token too.
+    with_made: Option<bool>,
 }
 
 /// Newly created token.
@@ -68,8 +78,14 @@ async fn list_tokens(
     caller: Caller,
     page: Page,
 ) -> Result<Json<TokenList>> {
-    let found = tokens::list(&app.db, caller.user.user_id, page.after_id()?, page.fetch()).await?;
-    let Listed { items, next } = page.cut(found, |token| token.id.to_string());
+    let user = caller.user.user_id;
+    let found = tokens::list(&app.db, user, page.after_id()?, page.fetch()).await?;
+    let Listed { mut items, next } = page.cut(found, |token| token.id.to_string());
+    let made = tokens::list_made(&app.db, user).await?;
+    for token in &mut items {
+        let own = made.iter().filter(|(by, _)| *by == token.id);
+        token.made = own.map(|(_, made)| made.clone()).collect();
+    }
     Ok(Json(TokenList { items, next }))
 }
 
@@ -95,12 +111,7 @@ async fn create_token(
     let expires_at = new
         .expires_at
         .unwrap_or(Time(now.plus_seconds(365.0 * 86_400.0)));
-    if expires_at.0 <= now {
-        return Err(Error::Invalid {
-            field: "expires_at",
-            detail: format!("{} is in the past", expires_at.0),
-        });
-    }
+    check_expiry(expires_at, now, app.config.token_days)?;
     let token = format!("{PREFIX}{}", secret::new_token());
     let about = Token {
         id: TokenId::new(),
@@ -109,27 +120,57 @@ async fn create_token(
         expires_at,
         created_at: now.into(),
         last_used_at: None,
+        made: Vec::new(),
     };
     let mut tx = request.begin().await?;
     key.shown_once(&mut tx, caller.key_owner(), &request_hash, now.into())
         .await?;
+    if let Some(tenant) = caller.tenant() {
+        tokens::QUOTA
+            .must_have_room(&mut tx, tenant, now.into())
+            .await?;
+    }
     tokens::insert(&mut tx, user, &about, &secret::hash(&token)).await?;
     tx.commit().await?;
+    app.accepted.note(secret::hash(&token));
     Ok((StatusCode::CREATED, Json(MadeToken { about, token })))
 }
 
+fn check_expiry(expires_at: Time, now: Timestamp, most_days: u32) -> Result<()> {
+    let last = now.plus_seconds(f64::from(most_days) * 86_400.0);
+    let detail = if expires_at.0 <= now {
+        format!("{} is in the past", expires_at.0)
+    } else if expires_at.0 > last {
+        format!("{} is more than {most_days} days from now", expires_at.0)
+    } else {
+        return Ok(());
+    };
+    Err(Error::Invalid {
+        field: "expires_at",
+        detail,
+    })
+}
+
 /// Revoke an API token
-#[utoipa::path(delete, path = "/tokens/{id}", tag = "session", params(("id" = TokenId, Path)),
+///
+/// Things made with it stay, unless you say otherwise.
+#[utoipa::path(delete, path = "/tokens/{id}", tag = "session",
+    params(("id" = TokenId, Path), Revocation),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem)))]
 async fn delete_token(
     request: RequestContext,
     caller: Caller,
     Id(id): Id<TokenId>,
+    Params(revocation): Params<Revocation>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
-    if !tokens::delete(&request, caller.user.user_id, id).await? {
-        return Err(Error::NotFound("token"));
+    let user = caller.user.user_id;
+    let mut tx = request.begin().await?;
+    match revocation.with_made {
+        Some(true) => tokens::delete_with_made(&mut tx, user, id).await?,
+        _ => tokens::delete(&mut tx, user, id).await?,
     }
+    tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -5,6 +5,7 @@
 
 mod store;
 
+pub(crate) use store::reseal;
 pub use store::{current, list, of_server, rotate};
 
 use crate::app::App;

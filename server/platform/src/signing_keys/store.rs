@@ -3,6 +3,7 @@
 use super::{PublishedKey, ServerKey};
 use crate::db::{self, Db, Tx, execute, row, rows};
 use crate::error::Result;
+use crate::sealing::StoredSecret;
 use crate::secret;
 use crate::time::Time;
 use ed25519_dalek::SigningKey;
@@ -14,14 +15,25 @@ use ed25519_dalek::SigningKey;
 pub async fn current(tx: &mut Tx, now: Time) -> Result<ServerKey> {
     let found = row!(
         in &mut *tx,
-        (Vec<u8>,),
-        "SELECT secret FROM signing_keys WHERE retired_at IS NULL
+        (String, Vec<u8>, Option<String>),
+        "SELECT public_key, secret, sealed_by FROM signing_keys WHERE retired_at IS NULL
          ORDER BY created_at DESC, public_key LIMIT 1"
     )?;
-    match found.and_then(|(secret,)| ServerKey::from_secret(&secret)) {
-        Some(key) => Ok(key),
-        None => Ok(insert(tx, now).await?),
-    }
+    let Some((public_key, bytes, sealed_by)) = found else {
+        return Ok(insert(tx, now).await?);
+    };
+    let stored = StoredSecret { bytes, sealed_by };
+    let secret = tx
+        .seals()
+        .open(&row_of(&public_key), &stored)
+        .map_err(sqlx::Error::from)?;
+    let key = ServerKey::from_secret(&secret);
+    Ok(key.ok_or_else(|| anyhow::anyhow!("the signing key {public_key} is damaged"))?)
+}
+
+/// Returns the name of a key, to which its seal is bound.
+fn row_of(public_key: &str) -> String {
+    format!("signing key {public_key}")
 }
 
 /// Returns the key that signs now, outside a transaction.
@@ -51,14 +63,43 @@ pub async fn rotate(tx: &mut Tx, now: Time) -> Result<ServerKey> {
 async fn insert(tx: &mut Tx, now: Time) -> db::Result<ServerKey> {
     let secret = secret::random::<32>();
     let key = ServerKey(SigningKey::from_bytes(&secret));
+    let stored = tx.seals().seal(&row_of(&key.public_key()), &secret);
     execute!(
         tx,
-        "INSERT INTO signing_keys (public_key, secret, created_at) VALUES ($1, $2, $3)",
+        "INSERT INTO signing_keys (public_key, secret, sealed_by, created_at)
+         VALUES ($1, $2, $3, $4)",
         key.public_key(),
-        secret.as_slice(),
+        stored.bytes,
+        stored.sealed_by,
         now
     )?;
     Ok(key)
+}
+
+/// Seals the keys that the present sealing key has not sealed, and returns their number.
+pub(crate) async fn reseal(tx: &mut Tx) -> db::Result<u64> {
+    let current = tx.seals().current().map(str::to_owned);
+    let found = rows!(
+        in &mut *tx,
+        (String, Vec<u8>, Option<String>),
+        "SELECT public_key, secret, sealed_by FROM signing_keys
+         WHERE COALESCE(sealed_by, '') <> COALESCE($1, '') ORDER BY public_key",
+        current
+    )?;
+    let mut sealed = 0;
+    for (public_key, bytes, sealed_by) in found {
+        let row = row_of(&public_key);
+        let secret = tx.seals().open(&row, &StoredSecret { bytes, sealed_by })?;
+        let stored = tx.seals().seal(&row, &secret);
+        sealed += execute!(
+            &mut *tx,
+            "UPDATE signing_keys SET secret = $2, sealed_by = $3 WHERE public_key = $1",
+            public_key,
+            stored.bytes,
+            stored.sealed_by
+        )?;
+    }
+    Ok(sealed)
 }
 
 /// Lists the public keys, the oldest first.

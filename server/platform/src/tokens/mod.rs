@@ -3,18 +3,25 @@
 //! Invariants: a token is shown once and stored as a hash. It may do no more than its user, and
 //! may only read unless its scope is `write`.
 
+mod made;
 mod store;
 
-pub(crate) use store::{delete, find_holder, insert, list};
+pub(crate) use made::list_made;
+pub use made::{Made, MadeByTokens, MadeKind, RevokedWithMade, named};
+pub(crate) use store::{delete, delete_with_made, find_holder, insert, list};
 pub use store::{delete_all, is_valid};
 
 use crate::ids::TokenId;
+use crate::quotas::Quota;
 use crate::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// Prefix of an API token; an agent's token has none.
 pub const PREFIX: &str = "bna_";
+
+/// Quota of the API tokens of a company's people.
+pub const QUOTA: Quota = Quota::new("api_tokens", "API tokens", 200, store::count);
 
 /// Scope of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
@@ -44,4 +51,7 @@ pub struct Token {
     /// Time of the last use, to the hour.
     #[schema(required)]
     pub last_used_at: Option<Time>,
+    /// Things made with the token that go on without it.
+    #[sqlx(skip)]
+    pub made: Vec<Made>,
 }

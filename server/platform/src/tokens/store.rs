@@ -1,12 +1,15 @@
 //! API tokens in the database.
 
+use super::made::remove_made;
 use super::{PREFIX, Scope, Token};
-use crate::audit::RequestContext;
 use crate::db::{Db, Result, Tx, execute, row, rows};
+use crate::error::{self, Error};
 use crate::ids::{TokenId, UserId};
 use crate::secret;
 use crate::session::{User, user_sql};
+use crate::tenants::Tenant;
 use crate::time::Time;
+use futures_util::future::BoxFuture;
 
 /// Minimum age of `last_used_at` before it is updated, seconds: most requests write nothing.
 const USE_NOTED_EVERY_S: f64 = 3600.0;
@@ -115,16 +118,30 @@ pub(crate) async fn insert(tx: &mut Tx, user: UserId, token: &Token, hash: &[u8]
     Ok(())
 }
 
-pub(crate) async fn delete(request: &RequestContext, user: UserId, id: TokenId) -> Result<bool> {
-    let mut tx = request.begin().await?;
+/// Revokes a token; what it made stays.
+///
+/// # Errors
+/// [`Error::NotFound`] when the user has no such token.
+pub(crate) async fn delete(tx: &mut Tx, user: UserId, id: TokenId) -> error::Result<()> {
     let deleted = execute!(
-        &mut tx,
+        tx,
         "DELETE FROM api_tokens WHERE user_id = $1 AND id = $2",
         user,
         id
     )?;
-    tx.commit().await?;
-    Ok(deleted > 0)
+    if deleted == 0 {
+        return Err(Error::NotFound("token"));
+    }
+    Ok(())
+}
+
+/// Revokes a token, and removes what it made.
+///
+/// # Errors
+/// [`Error::NotFound`] when the user has no such token.
+pub(crate) async fn delete_with_made(tx: &mut Tx, user: UserId, id: TokenId) -> error::Result<()> {
+    delete(tx, user, id).await?;
+    remove_made(tx, id).await
 }
 
 /// Revokes all of a user's tokens.
@@ -133,4 +150,19 @@ pub(crate) async fn delete(request: &RequestContext, user: UserId, id: TokenId) 
 /// Fails when the database fails.
 pub async fn delete_all(tx: &mut Tx, user: UserId) -> Result<u64> {
     execute!(tx, "DELETE FROM api_tokens WHERE user_id = $1", user)
+}
+
+/// Counts the API tokens of a tenant.
+pub(super) fn count(tx: &mut Tx, tenant: Tenant, _: Time) -> BoxFuture<'_, Result<i64>> {
+    Box::pin(async move {
+        let found = row!(
+            in tx,
+            (i64,),
+            "SELECT COUNT(*) FROM api_tokens t JOIN users u ON u.id = t.user_id
+             WHERE u.operator_id = $1 OR u.firm_id = $2",
+            tenant.operator(),
+            tenant.firm()
+        )?;
+        Ok(found.map_or(0, |(count,)| count))
+    })
 }

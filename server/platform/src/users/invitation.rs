@@ -5,7 +5,7 @@
 
 use crate::access::AdminWriter;
 use crate::app::App;
-use crate::audit::{Actor, RequestContext};
+use crate::audit::{Actor, Refusal, RequestContext};
 use crate::db::{Db, DomainEvent, Tx, execute, row};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid};
@@ -128,10 +128,12 @@ async fn accept_invitation(
 ) -> Result<Json<Accepted>> {
     let code_hash = secret::hash(&secret::normal_code(&acceptance.code));
     let now = app.clock.now();
-    let invited = find(&app.db, &code_hash)
-        .await?
-        .ok_or(Error::NotFound("code"))?;
+    let Some(invited) = find(&app.db, &code_hash).await? else {
+        request.refuse(Refusal::InvalidCode, None);
+        return Err(Error::NotFound("code"));
+    };
     if invited.expires_at.0 <= now {
+        request.refuse(Refusal::InvalidCode, Some(&invited.email));
         return Err(Error::Gone("this code has expired; ask for another"));
     }
     let company = invited.company.as_deref().unwrap_or_default();
@@ -222,6 +224,7 @@ impl DomainEvent for AccessEnded {}
 /// Ends all access of a user, also a stolen one.
 async fn end_access(tx: &mut Tx, user: UserId) -> Result<()> {
     session::end_all(tx, user, None).await?;
+    session::forget_devices(tx, user).await?;
     tokens::delete_all(tx, user).await?;
     tx.publish(&AccessEnded { user }).await?;
     oidc::forget(tx, user).await?;

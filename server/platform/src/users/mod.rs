@@ -16,6 +16,7 @@ use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Listed, Page, Valid, text};
 use crate::idempotency::{self, Key};
 use crate::ids::UserId;
+use crate::quotas::Quota;
 use crate::second_factor;
 use crate::session::{Role, normal_email};
 use crate::time::Time;
@@ -27,6 +28,9 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
+
+/// Quota of a company's users.
+pub const QUOTA: Quota = Quota::new("users", "users", 1000, store::count);
 
 /// Routes of the users of an operator.
 pub fn router<S>() -> OpenApiRouter<S>
@@ -196,6 +200,7 @@ async fn invite_user(
     let mut tx = request.begin().await?;
     key.shown_once(&mut tx, admin.operator, &request_hash, now)
         .await?;
+    QUOTA.must_have_room(&mut tx, admin.operator, now).await?;
     let created = store::insert(&mut tx, admin.operator, &email, &name, new.role.into(), now);
     let id = created.await?.ok_or_else(|| {
         Error::WrongState(format!(

@@ -6,7 +6,9 @@ use crate::error::{Error, Result};
 use crate::ids::{OperatorId, UserId};
 use crate::outbox;
 use crate::session::{self, Role};
+use crate::tenants::Tenant;
 use crate::time::Time;
+use futures_util::future::BoxFuture;
 use uuid::Uuid;
 
 /// SQL that selects the columns of a [`Person`].
@@ -167,4 +169,18 @@ pub(super) async fn set_rules(
         rules.second_factor_required
     )
     .map(drop)
+}
+
+/// Counts the users of a tenant.
+pub(super) fn count(tx: &mut Tx, tenant: Tenant, _: Time) -> BoxFuture<'_, db::Result<i64>> {
+    Box::pin(async move {
+        let found = row!(
+            in tx,
+            (i64,),
+            "SELECT COUNT(*) FROM users WHERE operator_id = $1 OR firm_id = $2",
+            tenant.operator(),
+            tenant.firm()
+        )?;
+        Ok(found.map_or(0, |(count,)| count))
+    })
 }

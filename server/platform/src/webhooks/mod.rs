@@ -18,6 +18,7 @@ pub use announce::announce;
 pub use kinds::{Audience, DeclaredKind, MessageKinds};
 pub use message::{TEST, TestMessage};
 pub use send::{SIGNATURE_HEADER, Sender};
+pub(crate) use store::reseal;
 
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
@@ -27,12 +28,16 @@ use crate::http::{Id, Json, Page, Params, Valid};
 use crate::idempotency::{self, Key};
 use crate::ids::{DeliveryId, WebhookId};
 use crate::outbox::{self, Channel, Delivery, DeliveryList, Filter};
+use crate::quotas::Quota;
 use crate::secret;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use webhook::{MadeWebhook, NewWebhook, Webhook, WebhookList};
+
+/// Quota of a company's webhooks.
+pub const QUOTA: Quota = Quota::new("webhooks", "webhooks", 50, store::count);
 
 /// Prefix of a webhook's secret.
 const SECRET_PREFIX: &str = "bns_";
@@ -93,6 +98,7 @@ async fn create_webhook(
         .once(&mut tx, writer.tenant, &request_hash, wanted.0, now)
         .await?;
     if made == wanted.0 {
+        QUOTA.must_have_room(&mut tx, writer.tenant, now).await?;
         let secret = format!("{SECRET_PREFIX}{}", secret::new_token());
         store::insert(&mut tx, writer.tenant, wanted, &new, &secret, now).await?;
     }

@@ -22,7 +22,7 @@ use binnacle_platform::secret::{self, HashMemory};
 use binnacle_platform::session::{self, Role};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
-use binnacle_platform::{http, password, signing_keys, users};
+use binnacle_platform::{http, password, seal_rotation, signing_keys, users};
 use clap::Parser;
 use serde_json::json;
 use std::io::Read;
@@ -35,7 +35,7 @@ use uuid::Uuid;
 /// Fails when the database cannot be reached.
 pub fn admin(arguments: Admin) -> Result<ExitCode> {
     block_on(async {
-        let db = Db::connect(&arguments.database.database_url, subscribers()).await?;
+        let db = arguments.database.open(subscribers()).await?;
         db.migrate().await?;
         let now = Clock::System.now().into();
         let name = name_of(&arguments.command);
@@ -59,6 +59,7 @@ fn name_of(command: &AdminCommand) -> &'static str {
         },
         AdminCommand::ResetUser { .. } => "admin reset-user",
         AdminCommand::RotateSigningKey => "admin rotate-signing-key",
+        AdminCommand::SealSecrets => "admin seal-secrets",
         AdminCommand::RevokeAgent { .. } => "admin revoke-agent",
     }
 }
@@ -68,6 +69,7 @@ async fn run(db: &Db, request: &RequestContext, command: AdminCommand, now: Time
         AdminCommand::Create { what } => create(db, request, what, now).await,
         AdminCommand::ResetUser { email } => reset_user(request, &email, now).await,
         AdminCommand::RotateSigningKey => rotate_signing_key(request, now).await,
+        AdminCommand::SealSecrets => seal_secrets(request).await,
         AdminCommand::RevokeAgent { vessel, agent } => {
             request.concerns_vessel(VesselId(vessel), None);
             revoke_agent(request, VesselId(vessel), AgentId(agent), now).await
@@ -119,6 +121,16 @@ async fn rotate_signing_key(request: &RequestContext, now: Time) -> Made {
     Ok(Ok(
         json!({ "public_key": key.public_key(), "created_at": now }),
     ))
+}
+
+async fn seal_secrets(request: &RequestContext) -> Made {
+    let Some(key) = request.db().seals().current() else {
+        return Ok(Err("--secrets-key: name the key that seals".to_owned()));
+    };
+    let mut tx = request.begin().await?;
+    let sealed = seal_rotation::seal_all(&mut tx).await?;
+    tx.commit().await?;
+    Ok(Ok(json!({ "key": key, "sealed": sealed })))
 }
 
 async fn revoke_agent(

@@ -7,7 +7,6 @@ use crate::subscriptions::subscribers;
 use anyhow::{Context, Result};
 use binnacle_fleet::ingest::{self, ShortBurst};
 use binnacle_platform::clock::Clock;
-use binnacle_platform::db::Db;
 use binnacle_platform::events;
 use binnacle_platform::ids::VesselId;
 use binnacle_wire::burst::MESSAGE_BYTES;
@@ -32,7 +31,7 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
     }
     let vessel = VesselId(arguments.vessel);
     let imported = block_on(async {
-        let db = Db::connect(&arguments.database.database_url, subscribers()).await?;
+        let db = arguments.database.open(subscribers()).await?;
         db.migrate().await?;
         let now = Clock::System.now().into();
         let imported = ingest::import_messages(&db, vessel, &messages, now).await;

@@ -9,7 +9,6 @@ use crate::subscriptions::subscribers;
 use anyhow::Result;
 use binnacle_compass::sample::Sample;
 use binnacle_platform::clock::Clock;
-use binnacle_platform::db::Db;
 use binnacle_platform::error::Error;
 use binnacle_platform::ids::{CompassId, VesselId};
 use std::io::{self, Write};
@@ -33,7 +32,7 @@ pub fn import(arguments: &Import) -> Result<ExitCode> {
         samples,
     };
     let imported = block_on(async {
-        let db = Db::connect(&arguments.database.database_url, subscribers()).await?;
+        let db = arguments.database.open(subscribers()).await?;
         db.migrate().await?;
         let now = Clock::System.now().into();
         let report = |imported: ImportedSamples| report_progress(imported, total);

@@ -155,6 +155,7 @@ impl Side {
             .replace("{version}", "1")
             .replace("{n}", "1")
             .replace("{name}", "class_a_trays")
+            .replace("{quota}", "users")
     }
 
     /// Returns a body for an operation, with this side's ids.
@@ -171,6 +172,7 @@ impl Side {
             "POST /webhooks" | "PUT /webhooks/{id}" => {
                 json!({ "url": "https://erp.example.com/", "kinds": ["alert.raised"] })
             }
+            "PUT /operators/{id}/quotas/{quota}" => json!({ "most": 1000 }),
             "POST /tokens" => json!({ "name": "ERP", "scope": "read" }),
             "POST /firms" | "POST /operators" => json!({ "name": "New" }),
             "PUT /me/password" => {

@@ -7,12 +7,12 @@
 pub(super) const OPEN: &str = "+++++++++";
 /// Allowed for all people and tokens, each for themselves.
 const ANYONE: &str = "++++++1++";
-/// Allowed for all but tokens that only read.
-const ONESELF: &str = "++3++31+3";
 /// Allowed for people and writing tokens of an operator or a firm.
 const PARTYS_ONESELF: &str = "++3++3133";
 /// Allowed for the owner of the id, who is the admin.
 const OWN_BY_ID: &str = "+43+43143";
+/// Allowed in a session of the owner of the id, who is the admin.
+const OWN_IN_PERSON: &str = "+43343143";
 /// Allowed in a session, not with a token.
 const IN_PERSON: &str = "++33+31+3";
 /// Allowed for an operator's admin in a session.
@@ -100,10 +100,12 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("GET /operators/{id}", PLATFORM_READS),
     ("DELETE /operators/{id}/firms/{firm}", PLATFORM_WRITES),
     ("PUT /operators/{id}/firms/{firm}", PLATFORM_WRITES),
+    ("PUT /operators/{id}/quotas/{quota}", PLATFORM_WRITES),
     ("GET /port-calls", FLEET_READS),
     ("POST /port-calls.csv", FLEET_WRITES),
     ("POST /port-calls/timestamps", FLEET_WRITES),
     ("GET /ports", PARTY_READS),
+    ("GET /quotas", PARTY_READS),
     ("GET /readyz", OPEN),
     ("GET /reports/fleet", FLEET_READS),
     ("GET /reports/fleet.csv", FLEET_READS),
@@ -127,9 +129,9 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("GET /session/provider/callback", OPEN),
     ("POST /session/provider/code", OPEN),
     ("GET /session/provider/start", OPEN),
-    ("DELETE /sessions", ONESELF),
+    ("DELETE /sessions", IN_PERSON),
     ("GET /sessions", ANYONE),
-    ("DELETE /sessions/{id}", OWN_BY_ID),
+    ("DELETE /sessions/{id}", OWN_IN_PERSON),
     ("GET /sign-in-rules", ADMIN_READS),
     ("PUT /sign-in-rules", ADMIN_IN_PERSON),
     ("GET /signing-keys", OPEN),

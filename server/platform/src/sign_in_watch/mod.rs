@@ -1,0 +1,150 @@
+//! Notice to an operator's admins when many sign-ins with their people's accounts are refused.
+
+use crate::app::App;
+use crate::db::{self, Db, Tx, execute, rows};
+use crate::error::Result;
+use crate::ids::OperatorId;
+use crate::notices::{DeclaredKind, DefaultMail, Notice, NoticesPublished, Readers};
+use crate::tenants::Tenant;
+use crate::time::Time;
+use std::time::Duration;
+use tracing::{error, warn};
+
+/// Kind of notice: many refused sign-ins.
+pub const NOTICE_KIND: DeclaredKind =
+    DeclaredKind::new("sign_ins_refused", Readers::Admins, DefaultMail::Letter);
+
+/// Refusals within [`WITHIN_S`] that are many. A person who has forgotten a password makes a
+/// handful; twenty are more than one person tries before the waits of the throttle.
+const MANY: i64 = 20;
+/// Period in which refusals are counted, seconds.
+const WITHIN_S: f64 = 3600.0;
+/// Time until the same operator is told again, seconds.
+const TOLD_AGAIN_AFTER_S: f64 = 86_400.0;
+/// Interval between two looks at the audit log.
+const LOOK_EVERY: Duration = Duration::from_mins(1);
+/// Accounts and addresses that a notice names at most.
+const MOST_NAMED: i64 = 5;
+
+/// Tells the admins of each operator with many refusals in the last hour, once a day. Returns the
+/// number of operators.
+///
+/// # Errors
+/// Fails when the database fails.
+pub async fn tell_of_many(app: &App) -> Result<usize> {
+    let now = app.clock.now();
+    let since = Time(now.plus_seconds(-WITHIN_S));
+    let told_before = Time(now.plus_seconds(-TOLD_AGAIN_AFTER_S));
+    let attacked = list_attacked(&app.db, since, told_before).await?;
+    for (operator, refusals) in &attacked {
+        let mut tx = app.db.begin().await?;
+        if !note_told(&mut tx, *operator, told_before, now.into()).await? {
+            continue;
+        }
+        let accounts = most_tried(&mut tx, *operator, since).await?;
+        let notice = notice(*refusals, &accounts);
+        tx.publish(&NoticesPublished {
+            tenant: Tenant::Operator(*operator),
+            notices: vec![notice],
+            by: None,
+            at: now.into(),
+        })
+        .await?;
+        tx.commit().await?;
+        warn!(%operator, refusals, "many sign-ins are refused");
+    }
+    Ok(attacked.len())
+}
+
+/// Looks for many refusals until the server stops.
+pub async fn watch(app: App) {
+    while !app.stopping.is_cancelled() {
+        if let Err(error) = tell_of_many(&app).await {
+            error!(?error, "refused sign-ins cannot be counted");
+        }
+        tokio::select! {
+            () = app.stopping.cancelled() => {}
+            () = tokio::time::sleep(LOOK_EVERY) => {}
+        }
+    }
+}
+
+fn notice(refusals: i64, tried: &[(String, String, i64)]) -> Notice {
+    let tried: Vec<String> = tried
+        .iter()
+        .map(|(account, address, times)| format!("{account} from {address}: {times} times"))
+        .collect();
+    Notice {
+        kind: NOTICE_KIND,
+        urgent: true,
+        subject: format!("{refusals} sign-ins were refused within an hour"),
+        text: format!(
+            "{}\n\nSomebody may be guessing passwords. Whoever signed in before is not locked out \
+             by it. Require a second factor of everyone if you do not yet, and look at the refused \
+             sign-ins in the audit log.",
+            tried.join("\n")
+        ),
+        path: "/settings/audit".to_owned(),
+        vessel: None,
+        about: None,
+    }
+}
+
+async fn list_attacked(
+    db: &Db,
+    since: Time,
+    told_before: Time,
+) -> db::Result<Vec<(OperatorId, i64)>> {
+    rows!(
+        db,
+        (OperatorId, i64),
+        "SELECT l.operator_id, COUNT(*) FROM audit_lines l
+         JOIN operators o ON o.id = l.operator_id
+         WHERE l.refusal IS NOT NULL AND l.at >= $1
+           AND (o.refusals_told_at IS NULL OR o.refusals_told_at < $2)
+         GROUP BY l.operator_id
+         HAVING COUNT(*) >= $3
+         ORDER BY l.operator_id",
+        since,
+        told_before,
+        MANY
+    )
+}
+
+/// Records that an operator is told now; false if another process has told it.
+async fn note_told(
+    tx: &mut Tx,
+    operator: OperatorId,
+    told_before: Time,
+    now: Time,
+) -> db::Result<bool> {
+    let noted = execute!(
+        tx,
+        "UPDATE operators SET refusals_told_at = $2
+         WHERE id = $1 AND (refusals_told_at IS NULL OR refusals_told_at < $3)",
+        operator,
+        now,
+        told_before
+    )?;
+    Ok(noted > 0)
+}
+
+/// Returns the accounts and addresses with the most refusals.
+async fn most_tried(
+    tx: &mut Tx,
+    operator: OperatorId,
+    since: Time,
+) -> db::Result<Vec<(String, String, i64)>> {
+    rows!(
+        in tx,
+        (String, String, i64),
+        "SELECT COALESCE(account, actor_name), address, COUNT(*) FROM audit_lines
+         WHERE operator_id = $1 AND refusal IS NOT NULL AND at >= $2
+         GROUP BY COALESCE(account, actor_name), address
+         ORDER BY COUNT(*) DESC, COALESCE(account, actor_name), address
+         LIMIT $3",
+        operator,
+        since,
+        MOST_NAMED
+    )
+}
