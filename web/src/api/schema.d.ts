@@ -3673,6 +3673,7 @@ export interface components {
              *     ]
              */
             not_known: string[];
+            order: components["schemas"]["NeedOrder"] | null;
             /**
              * @description Greatest deviation predicted for each place and day to come, where the model's band is
              *     narrow enough.
@@ -7149,6 +7150,22 @@ export interface components {
          * @enum {string}
          */
         NeedCauseKind: "never_adjusted" | "interval" | "event" | "over_limit" | "transit" | "change" | "failed_verification";
+        /** @description Open work order of a compass. */
+        NeedOrder: {
+            /** @description Beginning of the work as agreed or proposed. */
+            from: components["schemas"]["Time"];
+            /** @description The order. */
+            id: components["schemas"]["OrderId"];
+            /**
+             * @description Port, as the operator wrote it or as its UN/LOCODE.
+             * @example NLRTM
+             */
+            port: string;
+            /** @description State of the order. */
+            state: components["schemas"]["WorkOrderState"];
+            /** @description End of the work. */
+            until: components["schemas"]["Time"];
+        };
         /** @description Compass whose order is under way beside the plan. */
         NeedUnderWay: components["schemas"]["PlannedCompass"] & {
             /** @description The order. */
@@ -10318,7 +10335,7 @@ export interface components {
          * @description Urgency of a need.
          * @enum {string}
          */
-        Urgency: "routine" | "soon" | "urgent" | "overdue";
+        Urgency: "routine" | "unknown" | "soon" | "urgent" | "overdue";
         /** @description User of the operator. */
         User: {
             /** @description Creation time of the user. */
