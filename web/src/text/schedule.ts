@@ -48,6 +48,9 @@ export const schedule = {
     job: (vessel: string, day: string, port: string, firm: string, state: string) =>
       `${vessel}, ${day} at ${port} by ${firm}, ${state}`,
     dueOn: (compass: string, day: string) => `${compass} is due by ${day}`,
+    dueUnknown: (compass: string) => `${compass}: no adjustment on record`,
+    work: (vessel: string, state: string, port: string, day: string) =>
+      `${vessel}: ${state}, ${port}, ${day}`,
     met: { not: 'not scheduled', late: 'late' },
     notInPort: 'She is not in port then: a job belongs into a port call.',
     legend: {
