@@ -5,6 +5,7 @@
 mod audit;
 mod authorisation;
 mod events;
+mod first_run;
 mod headers;
 mod mail;
 mod people;
