@@ -379,7 +379,8 @@ export interface paths {
         put?: never;
         /**
          * Create a firm
-         * @description For platform admins. Its first users are created by `binnacle-server admin create adjuster`.
+         * @description For platform admins, and for an operator's admin: then the firm works for that operator alone,
+         *     until a platform admin engages it for another.
          */
         post: operations["create_firm"];
         delete?: never;
@@ -493,6 +494,48 @@ export interface paths {
          * @description The schedule no longer plans with the firm. It keeps its orders.
          */
         delete: operations["end_terms"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/firms/{id}/users": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Invite an adjuster of a firm
+         * @description For platform admins, and for an admin of the operator that entered the firm while it works for
+         *     no other. In a session, not with a token.
+         */
+        post: operations["invite_adjuster"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/first-run": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Tell whether the server is empty */
+        get: operations["find_first_run"];
+        put?: never;
+        /**
+         * Make the first operator and its admin
+         * @description On a server without any user, with the one-time code that its administrator has printed.
+         */
+        post: operations["begin"];
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -889,7 +932,7 @@ export interface paths {
         put?: never;
         /**
          * Enter an operator
-         * @description For platform admins. Its first people are made by `binnacle-server admin create user`.
+         * @description For platform admins, who then invite its first admin.
          */
         post: operations["create_operator"];
         delete?: never;
@@ -938,6 +981,47 @@ export interface paths {
          *     operator: those are cancelled or given back first.
          */
         delete: operations["dismiss_firm"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/operators/{id}/users": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Invite an operator's first admin
+         * @description For platform admins in a session. The admin invites the operator's other users.
+         */
+        post: operations["invite_admin"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/password-resets": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Ask for a code to set a new password
+         * @description For anyone who forgot the password: the server mails a code, valid for an hour. The response is
+         *     the same whether or not the address has an account. Whoever signs in by a provider gets none.
+         */
+        post: operations["request_password_reset"];
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -1564,8 +1648,8 @@ export interface paths {
         put?: never;
         /**
          * Invite a user
-         * @description Pass the link or the code on to the user, who sets a password with it. It works once, for a
-         *     week.
+         * @description The server mails the link where mail is set up. Otherwise pass the link or the code on to the
+         *     user, who sets a password with it. It works once, for a week.
          */
         post: operations["invite_user"];
         delete?: never;
@@ -1654,6 +1738,28 @@ export interface paths {
          * @description It comes with one compass, its standard compass.
          */
         post: operations["create_vessel"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Enter vessels by a CSV file
+         * @description The first line names the columns: `name`, and optionally `imo_number`, `call_sign`, `flag` and
+         *     `sister_class`, separated by commas or semicolons. Each vessel comes with its standard compass.
+         *     The file is stored whole or not at all. At most 2,000 vessels.
+         */
+        post: operations["upload_vessels"];
         delete?: never;
         options?: never;
         head?: never;
@@ -5917,6 +6023,11 @@ export interface components {
             /** @description Its id. */
             id: components["schemas"]["FirmId"];
             /**
+             * @description True if your operator has entered the firm and it works for no other: then your admins
+             *     invite its users.
+             */
+            is_own: boolean;
+            /**
              * @description Its name.
              * @example Nervión Compass
              */
@@ -6152,6 +6263,19 @@ export interface components {
             teams: components["schemas"]["FirmTeam"][];
             terms: components["schemas"]["FirmTerms"] | null;
         };
+        /** @description Admin who can now sign in. */
+        FirstAdmin: {
+            /**
+             * @description E-mail address to sign in with.
+             * @example ada@example.com
+             */
+            email: string;
+        };
+        /** @description State of a server's first run. */
+        FirstRun: {
+            /** @description True while the server has no user: its first operator can be made. */
+            open: boolean;
+        };
         /** @description An operator's vessels. */
         Fleet: {
             /** @description `after` of the next page. */
@@ -6337,6 +6461,16 @@ export interface components {
              * @description Relative standard deviation of the effect about the formula's.
              */
             tolerance: number;
+        };
+        /**
+         * @description Address of a user who forgot the password.
+         * @example {
+         *       "email": "ada@example.com"
+         *     }
+         */
+        Forgotten: {
+            /** @description E-mail address used to sign in. */
+            email: string;
         };
         /**
          * @description Share of the prior variance of each parameter and the constant that the data removed: 0
@@ -6563,7 +6697,8 @@ export interface components {
          * @example {
          *       "code": "7QWM-0V3N-KX2D-9RTA",
          *       "expires_at": "2026-11-28T07:00:00Z",
-         *       "link": "https://binnacle.example.com/invitation#7QWM-0V3N-KX2D-9RTA"
+         *       "link": "https://binnacle.example.com/invitation#7QWM-0V3N-KX2D-9RTA",
+         *       "mailed": true
          *     }
          */
         Invitation: {
@@ -6576,6 +6711,11 @@ export interface components {
              *     after the # is sent to no server and appears in no log.
              */
             link: string | null;
+            /**
+             * @description True if the server has mailed the link to the user. It has not where mail is not set up, or
+             *     the relay refused the letter.
+             */
+            mailed: boolean;
         };
         /** @description Invited user, with the invitation. */
         InvitedUser: {
@@ -7242,6 +7382,19 @@ export interface components {
             name: string;
         };
         /**
+         * @description User of a company to be invited by who manages the company.
+         * @example {
+         *       "email": "rosa@example.com",
+         *       "name": "Rosa Sáez"
+         *     }
+         */
+        NewCompanyUser: {
+            /** @description E-mail address to sign in with. */
+            email: string;
+            /** @description The user's name. */
+            name: string;
+        };
+        /**
          * @description A compass to be entered.
          * @example {
          *       "name": "Steering compass",
@@ -7291,6 +7444,31 @@ export interface components {
             proof: string;
             /** @description Ed25519 (RFC 8032), 64 hexadecimal digits. */
             public_key: string;
+        };
+        /**
+         * @description First operator of a server, and its first admin.
+         * @example {
+         *       "code": "7QWM-0V3N-KX2D-9RTA",
+         *       "email": "ada@example.com",
+         *       "name": "Ada Lovelace",
+         *       "operator_name": "Armada del Sur",
+         *       "password": "seven gulls over the quay"
+         *     }
+         */
+        NewFirstOperator: {
+            /** @description Code that `binnacle-server admin first-run` has printed; case and hyphens do not matter. */
+            code: string;
+            /** @description E-mail address that the admin signs in with. */
+            email: string;
+            /** @description Name of the admin. */
+            name: string;
+            /** @description Name of the operator. */
+            operator_name: string;
+            /**
+             * Format: password
+             * @description Password: at least 12 characters, neither common nor easily guessed.
+             */
+            password: string;
         };
         /** @description Mail recipient to be added. */
         NewMailRecipient: {
@@ -10522,6 +10700,16 @@ export interface components {
             alerts?: components["schemas"]["AlertLimits"];
             /** @description Settings of the analysis of its samples. */
             analysis: components["schemas"]["ReadingSettings"];
+        };
+        /**
+         * @description Result of an upload of vessels.
+         * @example {
+         *       "created": 12
+         *     }
+         */
+        VesselUpload: {
+            /** @description Number of new vessels. */
+            created: number;
         };
         /** @description Webhook, without its secret. */
         Webhook: {
@@ -13772,6 +13960,283 @@ export interface operations {
             };
         };
     };
+    invite_adjuster: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["FirmId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewCompanyUser"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Invitation"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The e-mail address already has an account */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_first_run: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FirstRun"];
+                };
+            };
+        };
+    };
+    begin: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewFirstOperator"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FirstAdmin"];
+                };
+            };
+            /** @description There is no such code */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The server has users */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The code has expired */
+            410: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     find_fleet: {
         parameters: {
             query?: {
@@ -16476,6 +16941,171 @@ export interface operations {
             };
             /** @description Insufficient Storage */
             507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    invite_admin: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OperatorId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewCompanyUser"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Invitation"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The e-mail address already has an account */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    request_password_reset: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Forgotten"];
+            };
+        };
+        responses: {
+            /** @description A letter is sent if the address has an account */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Mail is not set up on this server */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -20506,6 +21136,124 @@ export interface operations {
                 };
             };
             /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    upload_vessels: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                /**
+                 * @example name,imo_number,call_sign,flag
+                 *     Nao Victoria,9074729,EAVN,ES
+                 */
+                "text/csv": string;
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VesselUpload"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The file has errors; the detail names the first fifty with line and column */
             422: {
                 headers: {
                     [name: string]: unknown;
