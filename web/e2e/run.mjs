@@ -6,6 +6,7 @@
  * a firm that works for it, with the same password), BINNACLE_PLATFORM (the e-mail of who
  * runs the platform, with the same password), BINNACLE_OIDC_ISSUER (a provider by whose word
  * the admin may sign in) with BINNACLE_PUBLIC_URL (where the provider sends people back to),
+ * BINNACLE_EMPTY_URL (a server without a user) with BINNACLE_SETUP_CODE (its set-up code),
  * BINNACLE_CHROMIUM (else the system's). Screenshots go to tests/artefacts. Exit code 1 on the first failure.
  */
 import { mkdir } from 'node:fs/promises';
@@ -16,6 +17,7 @@ import { access } from './scenarios/access.mjs';
 import { adjusting } from './scenarios/adjusting.mjs';
 import { alerts } from './scenarios/alerts.mjs';
 import { azimuths } from './scenarios/azimuths.mjs';
+import { begin } from './scenarios/begin.mjs';
 import { fleet } from './scenarios/fleet.mjs';
 import { link } from './scenarios/link.mjs';
 import { live } from './scenarios/live.mjs';
@@ -30,6 +32,7 @@ import { vessel } from './scenarios/vessel.mjs';
 /** What a user must be able to do, each in a browser of its own; later ones of a group
  * go on where earlier ones ended. */
 const groups = {
+  begin,
   fleet,
   link,
   vessel,
@@ -57,6 +60,8 @@ const settings = {
   platform: process.env.BINNACLE_PLATFORM,
   issuer: process.env.BINNACLE_OIDC_ISSUER,
   publicUrl: process.env.BINNACLE_PUBLIC_URL,
+  emptyUrl: process.env.BINNACLE_EMPTY_URL,
+  setupCode: process.env.BINNACLE_SETUP_CODE,
 };
 
 /** All of them, those of a group, or those with the words in their names: `npm run e2e -- fleet`. */

@@ -1,7 +1,7 @@
 /**
- * Why a vessel needs someone, the most pressing first: an alert, an adjustment that is due
- * and that nobody has taken in hand, a deviation that is large where she is or goes next.
- * Pure functions.
+ * What a vessel needs done, the most pressing first: an alert, an order that waits for an
+ * answer, an adjustment that is due and not in hand, a deviation that is large where the vessel
+ * is or goes next. Pure functions.
  */
 
 import type {
@@ -11,6 +11,7 @@ import type {
   SchedulePlan,
   Severity,
   Urgency,
+  WorkOrderState,
   Worst,
 } from './api/types';
 import { grade } from './science/curve';
@@ -28,9 +29,23 @@ export type FleetLine = FleetVessel & {
   due?: Due | undefined;
   /** The first that presses and that no firm was asked for; planned for a day, or for none. */
   unoffered?: (Due & { day: string | null }) | undefined;
-  /** An adjustment that a firm was offered or has agreed to. */
-  inHand?: { day: string; order: string | null } | undefined;
+  /** An order that waits for the operator. */
+  waiting?: (OpenOrder & { urgency: Urgency }) | undefined;
+  /** An adjustment that is with a firm, being done, or waiting for headings at sea. */
+  inHand?: OpenOrder | undefined;
 };
+
+/** How far the order of a compass has come. */
+export interface OpenOrder {
+  order: string;
+  state: WorkOrderState;
+  from: string;
+}
+
+/** States in which the next step is the operator's. */
+const waitsForOperator: readonly WorkOrderState[] = ['planned', 'proposed', 'declined', 'failed'];
+/** States in which the work is done, and what comes due afterwards is another need. */
+const workIsDone: readonly WorkOrderState[] = ['adjusted', 'verified'];
 
 /** The vessels with the needs of each, and how far the plan has come with them. */
 export function withDues(
@@ -40,23 +55,24 @@ export function withDues(
 ): FleetLine[] {
   const jobs = new Map(
     (plan?.jobs ?? []).flatMap((job) =>
-      job.compasses.map(({ compass_id }, i) => [
-        compass_id,
-        { day: job.day, asked: job.state !== 'proposed', order: job.orders[i] ?? null },
-      ]),
+      job.compasses.map(({ compass_id }): [string, string] => [compass_id, job.day]),
     ),
   );
-  const known = new Map<string, Pick<FleetLine, 'due' | 'unoffered' | 'inHand'>>();
-  for (const { vessel_id, compass_id, due_on: on, urgency, reason } of needs) {
+  const known = new Map<string, Pick<FleetLine, 'due' | 'unoffered' | 'waiting' | 'inHand'>>();
+  for (const { vessel_id, compass_id, due_on: on, urgency, reason, order } of needs) {
     const due = { compass: compass_id, on, urgency, reason };
-    const job = jobs.get(compass_id);
+    const open = order && { order: order.id, state: order.state, from: order.from };
     const hers = known.get(vessel_id) ?? {};
     known.set(vessel_id, hers);
     if (!hers.due || on < hers.due.on) hers.due = due;
-    if (job?.asked) {
-      if (!hers.inHand || job.day < hers.inHand.day) hers.inHand = job;
-    } else if (urgency !== 'routine' && (!hers.unoffered || on < hers.unoffered.on)) {
-      hers.unoffered = { ...due, day: job?.day ?? null };
+    if (open && waitsForOperator.includes(open.state)) {
+      hers.waiting ??= { ...open, urgency };
+      continue;
+    }
+    if (open && (!hers.inHand || open.from < hers.inHand.from)) hers.inHand = open;
+    if (open && !workIsDone.includes(open.state)) continue;
+    if (urgency !== 'routine' && (!hers.unoffered || on < hers.unoffered.on)) {
+      hers.unoffered = { ...due, day: jobs.get(compass_id) ?? null };
     }
   }
   return vessels.map((vessel) => ({ ...vessel, ...known.get(vessel.id) }));
@@ -86,11 +102,12 @@ export type Reason =
       more: number;
     }
   | { kind: 'due'; compass: string; urgency: Urgency; on: string; day: string | null; why: string }
+  | ({ kind: 'order'; urgency: Urgency } & OpenOrder)
   | { kind: 'deviation'; port: string | null };
 
 /** Why she needs someone, the most pressing first; nothing where she does not. */
 export function reasonsOf(vessel: FleetLine): Reason[] {
-  const { alert, open_alerts, unoffered } = vessel;
+  const { alert, open_alerts, unoffered, waiting } = vessel;
   const reasons: Reason[] = [];
   if (alert) {
     const { id, severity, cause, summary: why } = alert;
@@ -105,6 +122,7 @@ export function reasonsOf(vessel: FleetLine): Reason[] {
       more: open_alerts - (known ? 0 : 1),
     });
   }
+  if (waiting) reasons.push({ kind: 'order', ...waiting });
   if (unoffered) reasons.push({ kind: 'due', why: unoffered.reason, ...unoffered });
   const ahead = worstAhead(vessel);
   // The alert says it already.
@@ -117,8 +135,16 @@ export function reasonsOf(vessel: FleetLine): Reason[] {
 
 const severityRank: Record<Severity, number> = { notice: 1, warning: 2, critical: 3 };
 /** An overdue compass presses as a warning that somebody knows of; beyond 5° little less. */
-const urgencyRank: Record<Urgency, number> = { overdue: 2.2, urgent: 1.2, soon: 0.8, routine: 0 };
+const urgencyRank: Record<Urgency, number> = {
+  overdue: 2.2,
+  urgent: 1.2,
+  soon: 0.8,
+  unknown: 0.5,
+  routine: 0,
+};
 const largeRank = 2.1;
+/** A firm that waits for an answer lets its offer lapse: today's work, whenever it is due. */
+const answerRank = 1.6;
 
 function rank(reason: Reason): number {
   switch (reason.kind) {
@@ -126,6 +152,10 @@ function rank(reason: Reason): number {
       return severityRank[reason.severity] + (reason.known ? 0 : 0.5);
     case 'due':
       return urgencyRank[reason.urgency];
+    case 'order':
+      return reason.state === 'planned'
+        ? urgencyRank[reason.urgency]
+        : Math.max(answerRank, urgencyRank[reason.urgency]);
     case 'deviation':
       return largeRank;
   }

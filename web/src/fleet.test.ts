@@ -1,5 +1,12 @@
 import { describe, expect, it } from 'vitest';
-import type { AdjustmentNeed, FleetVessel, PlannedJob, SchedulePlan } from './api/types';
+import type {
+  AdjustmentNeed,
+  FleetVessel,
+  PlannedJob,
+  SchedulePlan,
+  Urgency,
+  WorkOrderState,
+} from './api/types';
 import { pressing, reasonsOf, withDues, worstAhead } from './attention';
 import {
   arranged,
@@ -165,7 +172,7 @@ describe('a view', () => {
 
 describe('what is due next', () => {
   const need = (vessel_id: string, due_on: string) =>
-    ({ vessel_id, due_on, urgency: 'soon', reason: 'r' }) as AdjustmentNeed;
+    ({ vessel_id, due_on, urgency: 'soon', reason: 'r', order: null }) as AdjustmentNeed;
 
   it('is the first of her needs, and puts the earliest first and the unknown last', () => {
     const vessels = ['A', 'B', 'C'].map((id) => ({ id, name: id }) as FleetVessel);
@@ -178,29 +185,44 @@ describe('what is due next', () => {
 });
 
 describe('who needs someone', () => {
-  const need = (vessel_id: string, urgency: AdjustmentNeed['urgency'], compass_id = vessel_id) =>
-    ({ vessel_id, compass_id, due_on: '2026-11-23', urgency, reason: 'r' }) as AdjustmentNeed;
-  const job = (compass_id: string, state: PlannedJob['state'], orders: string[]) =>
-    ({ compasses: [{ compass_id }], day: '2026-11-28', state, orders }) as unknown as PlannedJob;
+  const need = (vessel_id: string, urgency: Urgency, more: Partial<AdjustmentNeed> = {}) =>
+    ({
+      ...{ vessel_id, compass_id: vessel_id, due_on: '2026-11-23', urgency },
+      ...{ reason: 'r', order: null, ...more },
+    }) as AdjustmentNeed;
+  const order = (state: WorkOrderState): Pick<AdjustmentNeed, 'order'> => ({
+    order: {
+      ...{ id: `order-${state}`, state, port: 'NLRTM' },
+      ...{ from: '2026-11-28T08:00:00Z', until: '2026-11-28T11:00:00Z' },
+    },
+  });
+  const job = (compass_id: string) =>
+    ({ compasses: [{ compass_id }], day: '2026-11-28', state: 'proposed' }) as PlannedJob;
   const large = { compass_deg: 55, deviation_deg: 5.8, band95_deg: 0.7 };
   const ships = [
     vessel('Acknowledged', alert('warning', 'acknowledged')),
     vessel('Calm'),
     vessel('Large', { worst: large }),
+    vessel('Never'),
     vessel('Offered'),
+    vessel('On board'),
     vessel('Planned'),
+    vessel('Proposed'),
     vessel('Raised', alert('warning', 'raised')),
     vessel('Soon'),
     vessel('Unplanned'),
   ];
   const needs = [
     need('Calm', 'routine'),
-    need('Offered', 'overdue'),
+    need('Never', 'unknown'),
+    need('Offered', 'overdue', order('offered')),
+    need('On board', 'overdue', order('on_board')),
     need('Planned', 'overdue'),
+    need('Proposed', 'routine', order('proposed')),
     need('Soon', 'soon'),
     need('Unplanned', 'overdue'),
   ];
-  const jobs = [job('Planned', 'proposed', []), job('Offered', 'offered', ['order-1'])];
+  const jobs = [job('Planned')];
   const lines = withDues(ships, needs, { jobs } as unknown as SchedulePlan);
   const of = (name: string) => {
     const found = lines.find((line) => line.name === name);
@@ -208,7 +230,7 @@ describe('who needs someone', () => {
     return found;
   };
 
-  it('is a ship with an alert, one due that no firm was asked for, or one with a large deviation', () => {
+  it('is a ship with an alert, an adjustment not in hand, or a large deviation: today’s first', () => {
     const asked = { ...usual, filter: 'attention' } as const;
     expect(arranged(lines, asked, now).map(({ name }) => name)).toEqual([
       'Raised',
@@ -216,11 +238,13 @@ describe('who needs someone', () => {
       'Unplanned',
       'Large',
       'Acknowledged',
+      'Proposed',
       'Soon',
+      'Never',
     ]);
     // All of them stand before who needs nobody.
     const all = arranged(lines, usual, now).map(({ name }) => name);
-    expect(all.slice(-2)).toEqual(['Calm', 'Offered']);
+    expect(all.slice(-3)).toEqual(['Calm', 'Offered', 'On board']);
   });
 
   it('says why', () => {
@@ -229,7 +253,26 @@ describe('who needs someone', () => {
     expect(reasonsOf(of('Planned'))).toMatchObject([{ ...due, day: '2026-11-28' }]);
     expect(reasonsOf(of('Large'))).toEqual([{ kind: 'deviation', port: null }]);
     expect(reasonsOf(of('Offered'))).toEqual([]);
-    expect(of('Offered').inHand).toMatchObject({ day: '2026-11-28', order: 'order-1' });
+    expect(of('Offered').inHand).toMatchObject({ order: 'order-offered', state: 'offered' });
+    expect(reasonsOf(of('Never'))).toMatchObject([{ kind: 'due', urgency: 'unknown' }]);
+    expect(reasonsOf(of('Proposed'))).toMatchObject([{ kind: 'order', state: 'proposed' }]);
+  });
+
+  it('keeps the cause of an alert that somebody acknowledged', () => {
+    const cause = { kind: 'alert', cause: 'drift', known: true };
+    expect(reasonsOf(of('Acknowledged'))).toMatchObject([cause]);
+  });
+
+  it('takes a vessel with the adjuster on board to be in hand, however late it is', () => {
+    expect(reasonsOf(of('On board'))).toEqual([]);
+    expect(of('On board').inHand).toMatchObject({ state: 'on_board' });
+  });
+
+  it('lets a new need stand beside an adjustment that is done', () => {
+    const again = [need('Offered', 'urgent', order('adjusted'))];
+    const [line] = withDues([vessel('Offered')], again, null);
+    expect(line?.inHand).toMatchObject({ state: 'adjusted' });
+    expect(line && reasonsOf(line)).toMatchObject([{ kind: 'due', urgency: 'urgent' }]);
   });
 
   it('counts the other alerts, and names a large deviation once', () => {
@@ -250,7 +293,10 @@ describe('who needs someone', () => {
   it('looks at each of her compasses', () => {
     const [line] = withDues(
       [vessel('Offered')],
-      [need('Offered', 'overdue'), need('Offered', 'urgent', 'steering')],
+      [
+        need('Offered', 'overdue', order('offered')),
+        need('Offered', 'urgent', { compass_id: 'steering' }),
+      ],
       { jobs } as unknown as SchedulePlan,
     );
     expect(line && reasonsOf(line)).toMatchObject([{ kind: 'due', urgency: 'urgent', day: null }]);

@@ -73,9 +73,9 @@ fn a_ship_is_adjusted_after_a_new_compass_is_installed() {
 }
 
 #[test]
-fn a_compass_without_a_record_is_due_today_and_overdue_every_day() {
+fn a_compass_without_a_record_is_unknown_and_to_be_arranged_within_the_soon_days() {
     let due = due_of(json!({"flag": "NO"}), json!({}));
-    assert_eq!((due.on, due.urgency), (day("2026-11-21"), Urgency::Overdue));
+    assert_eq!((due.on, due.urgency), (day("2027-01-20"), Urgency::Unknown));
     assert_eq!(due.causes[0].kind, CauseKind::NeverAdjusted);
 }
 
@@ -251,19 +251,18 @@ fn a_flags_stricter_limit_speaks_and_the_vessels_own_speaks_below_it() {
 }
 
 #[test]
-fn deviation_over_the_limit_is_named_where_no_adjustment_is_on_record() {
+fn deviation_over_the_limit_is_due_where_no_adjustment_is_on_record() {
     let over = over_own_limit(&json!({"deviation_limit_deg": 5.0,
         "predicted": [
             {"on": "2026-11-21", "place": "her position", "worst_deviation_deg": 25.7,
              "side": "west"}]}));
     assert_eq!(
         (over.on, over.urgency),
-        (day("2026-11-21"), Urgency::Overdue)
+        (day("2026-12-05"), Urgency::Urgent)
     );
     assert_eq!(
         over.reason,
-        "no adjustment is on record (ISO 25862:2019, Annex G, read second-hand); 25.7° W \
-         of deviation at her position on 2026-11-21, over the vessel's own limit of 5°"
+        "25.7° W of deviation at her position on 2026-11-21, over the vessel's own limit of 5°"
     );
 }
 

@@ -104,11 +104,22 @@ pub struct Auditor {
     tenant: Option<Tenant>,
 }
 
+/// Caller who may enter a firm: a platform admin, or an operator's admin for the operator.
+#[derive(Clone, Copy, Debug)]
+pub struct Founder {
+    /// Operator of the caller; `None` for a platform admin.
+    pub operator: Option<OperatorId>,
+    /// Owner of the caller's idempotency keys.
+    pub key_owner: Tenant,
+    is_in_person: bool,
+}
+
 /// Caller who manages operators and firms.
 #[derive(Clone, Copy, Debug)]
 pub struct Platform {
     user: UserId,
     read_only: bool,
+    is_in_person: bool,
 }
 
 impl Caller {
@@ -211,7 +222,30 @@ impl Auditor {
     }
 }
 
+impl Founder {
+    /// Refuses a token, which must not be able to create users.
+    ///
+    /// # Errors
+    /// Fails when the caller is one.
+    pub fn must_be_in_person(&self) -> Result<()> {
+        must_be_in_person(self.is_in_person)
+    }
+}
+
+fn must_be_in_person(is_in_person: bool) -> Result<()> {
+    let token = "a token cannot do this; sign in";
+    is_in_person.then_some(()).ok_or(Error::Forbidden(token))
+}
+
 impl Platform {
+    /// Refuses a token, which must not be able to create users.
+    ///
+    /// # Errors
+    /// Fails when the caller is one.
+    pub fn must_be_in_person(&self) -> Result<()> {
+        must_be_in_person(self.is_in_person)
+    }
+
     /// Returns the owner of the admin's idempotency keys; refuses a read-only token.
     pub fn must_be_writer(&self) -> Result<Tenant> {
         if self.read_only {
@@ -402,6 +436,31 @@ where
     }
 }
 
+impl<S> FromRequestParts<S> for Founder
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Founder> {
+        let caller = Caller::from_request_parts(parts, state).await?;
+        let operator = match caller.user.role {
+            Role::PlatformAdmin => None,
+            _ => Some(caller.operator()?),
+        };
+        if operator.is_some() {
+            caller.must_be_admin()?;
+        }
+        caller.must_not_only_read()?;
+        Ok(Founder {
+            operator,
+            key_owner: caller.key_owner(),
+            is_in_person: caller.session.is_some(),
+        })
+    }
+}
+
 impl<S> FromRequestParts<S> for Platform
 where
     App: FromRef<S>,
@@ -417,6 +476,7 @@ where
         Ok(Platform {
             user: caller.user.user_id,
             read_only: caller.read_only,
+            is_in_person: caller.session.is_some(),
         })
     }
 }

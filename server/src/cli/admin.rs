@@ -32,6 +32,9 @@ pub enum AdminCommand {
         #[arg(long)]
         email: String,
     },
+    /// Print a one-time code with which the first operator and its admin are made in the browser;
+    /// only while there is no user
+    FirstRun,
     /// Retire the key by which the server counter-signs work orders, and make the next; the old one
     /// stays published, so that older evidence can be checked
     RotateSigningKey,

@@ -207,8 +207,6 @@ fn config(url: &str, settings: &[&str]) -> Serve {
         "--analysis-workers",
         "0",
         "--webhooks-to-private",
-        "--smtp-url",
-        "smtp://localhost:9?tls=none",
         "--mail-from",
         "Binnacle <alerts@binnacle.example>",
     ];
@@ -217,9 +215,15 @@ fn config(url: &str, settings: &[&str]) -> Serve {
     } else {
         &["--public-url", "https://binnacle.example"]
     };
+    let relay: &[&str] = if settings.contains(&"--smtp-url") {
+        &[]
+    } else {
+        &["--smtp-url", "smtp://localhost:9?tls=none"]
+    };
     let all = arguments
         .into_iter()
         .chain(more)
+        .chain(relay.iter().copied())
         .chain(public.iter().copied())
         .chain(settings.iter().copied());
     let Command::Serve(serve) = Cli::parse_from(all).command else {

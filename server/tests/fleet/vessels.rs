@@ -1,7 +1,7 @@
 //! Vessels and compasses.
 
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{ApiResponse, TestServer};
+use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -11,6 +11,9 @@ on_both!(
     an_invalid_vessel_is_refused_by_field,
     a_vessel_may_have_several_compasses,
     vessel_and_compass_details_can_be_amended,
+    an_imo_number_is_one_vessels_within_an_operator,
+    duplicate_imo_numbers_from_before_are_kept_until_someone_amends_them,
+    a_file_of_vessels_is_entered_whole_or_not_at_all,
 );
 
 async fn vessels_are_paged_in_order_of_creation(server: TestServer) {
@@ -162,6 +165,104 @@ async fn vessel_and_compass_details_can_be_amended(server: TestServer) {
         let response =
             ApiResponse::send(viewer.request(Method::PATCH, path).json(&json!({}))).await;
         assert_eq!(response.problem(), "forbidden");
+    }
+    server.finish().await;
+}
+
+fn numbered(name: &str, number: &str) -> Value {
+    json!({ "name": name, "imo_number": number })
+}
+
+async fn amend(person: &Person, vessel: &Value, body: Value) -> ApiResponse {
+    let path = format!("/vessels/{}", vessel["id"].as_str().unwrap());
+    ApiResponse::send(person.request(Method::PATCH, &path).json(&body)).await
+}
+
+async fn an_imo_number_is_one_vessels_within_an_operator(server: TestServer) {
+    let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
+    let nao = ada.post("/vessels", &numbered("Nao", "9074729")).await.good();
+    let second = ada.post("/vessels", &numbered("Kogge", "9074729")).await;
+    assert_eq!(second.problem(), "invalid");
+    let detail = second.json()["detail"].as_str().unwrap().to_owned();
+    assert_eq!(detail, "imo_number: 9074729 is the IMO number of Nao");
+    let kogge = ada.create_vessel("Kogge").await;
+    let amended = amend(&ada, &kogge, json!({ "imo_number": "9074729" })).await;
+    assert_eq!(amended.problem(), "invalid");
+    amend(&ada, &nao, json!({ "imo_number": "9074729", "name": "Nao Victoria" }))
+        .await
+        .good();
+    // A vessel that was sold is two operators'.
+    eve.post("/vessels", &numbered("Nao", "9074729")).await.good();
+    server.finish().await;
+}
+
+async fn duplicate_imo_numbers_from_before_are_kept_until_someone_amends_them(server: TestServer) {
+    let ada = server.admin("ada").await;
+    ada.post("/vessels", &numbered("Nao", "9074729")).await.good();
+    let other = ada.create_vessel("Other Nao").await;
+    // As before the migration, with a duplicate; then its statements again.
+    for before in [
+        "DROP INDEX vessels_by_imo",
+        "ALTER TABLE vessels DROP COLUMN imo_shared",
+        "UPDATE vessels SET imo_number = '9074729'",
+    ] {
+        server.run_sql(before).await;
+    }
+    let migration = include_str!("../../../migrations/0020_first_run.sql");
+    let (_, of_vessels) = migration.split_once("ALTER TABLE vessels").unwrap();
+    let (column, rest) = of_vessels.split_once(';').unwrap();
+    server
+        .run_sql(format!("ALTER TABLE vessels{column}").leak())
+        .await;
+    for statement in rest.split(';').filter(|text| !text.trim().is_empty()) {
+        server.run_sql(statement).await;
+    }
+    let listed = ada.get("/vessels").await.good();
+    for vessel in listed["items"].as_array().unwrap() {
+        assert_eq!(vessel["imo_number"], "9074729");
+    }
+    // The duplicate may be renamed, and gets a number of its own.
+    amend(&ada, &other, json!({ "name": "Kogge" })).await.good();
+    amend(&ada, &other, json!({ "imo_number": "9211561" })).await.good();
+    let back = amend(&ada, &other, json!({ "imo_number": "9074729" })).await;
+    assert_eq!(back.problem(), "invalid");
+    server.finish().await;
+}
+
+async fn a_file_of_vessels_is_entered_whole_or_not_at_all(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let send = async |text: &str| {
+        let request = ada.request(Method::POST, "/vessels.csv");
+        let request = request.header("content-type", "text/csv");
+        ApiResponse::send(request.body(text.to_owned())).await
+    };
+    ada.create_vessel("Kogge").await;
+    let faulty = "name,imo_number\nNao,9074728\nKogge,\nHulk,9074729\nHolk,9074729\n";
+    let refused = send(faulty).await;
+    assert_eq!(refused.problem(), "invalid");
+    let detail = refused.json()["detail"].as_str().unwrap().to_owned();
+    for message in [
+        "line 2: imo_number: 9074728 is not an IMO number",
+        "line 3: name: Kogge is in the fleet already",
+        "line 5: imo_number: 9074729 is already on line 4",
+    ] {
+        assert!(detail.contains(message), "{detail}");
+    }
+    let good = send("\u{feff}name;flag;imo_number\r\nNao Victoria;ES;9074729\r\nHulk;;\r\n").await;
+    assert_eq!((good.status, good.good()), (201, json!({ "created": 2 })));
+    let listed = ada.get("/vessels").await.good();
+    let named = |at: usize| listed["items"][at]["name"].as_str().unwrap();
+    assert_eq!([named(0), named(1), named(2)], ["Kogge", "Nao Victoria", "Hulk"]);
+    assert_eq!(listed["items"][1]["flag"], "ES");
+    assert_eq!(listed["items"][1]["compasses"].as_array().unwrap().len(), 1);
+    for (text, message) in [
+        ("imo\n1\n", "line 1: imo: is not a column"),
+        ("flag\nES\n", "line 1: name: the column is missing"),
+        ("name\n", "the file names no vessel"),
+    ] {
+        let refused = send(text).await;
+        let detail = refused.json()["detail"].as_str().unwrap().to_owned();
+        assert!(detail.contains(message), "{detail}");
     }
     server.finish().await;
 }

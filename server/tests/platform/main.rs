@@ -6,6 +6,7 @@ mod audit;
 mod authorisation;
 mod defences;
 mod events;
+mod first_run;
 mod headers;
 mod mail;
 mod people;

@@ -15,8 +15,15 @@ export const platform = {
       await operators.getByRole('button', { name: 'Enter the operator' }).click();
       await operators.getByText('Armada del Sur is entered').waitFor();
       const line = operators.getByRole('listitem').filter({ hasText: 'Armada del Sur' });
-      await line.getByText('Its first user').click();
-      assert.match(await line.locator('code').innerText(), /--operator [0-9a-f-]{36} --email/);
+      await line.getByRole('button', { name: 'Invite an admin of Armada del Sur' }).click();
+      await line.getByLabel('Name').fill('Elcano');
+      await line.getByLabel('E-mail').fill('elcano@test.example');
+      await line.getByRole('button', { name: 'Invite', exact: true }).click();
+      assert.match(
+        await line.getByTestId('invitation-link').innerText(),
+        /\/invitation#[0-9A-Z-]{19}$/,
+      );
+      await line.getByRole('button', { name: 'Done' }).click();
       const firms = page.getByRole('region', { name: 'Adjuster firms' });
       await firms.getByLabel('Name of the firm').fill('Río Compass');
       await firms.getByRole('button', { name: 'Enter the firm' }).click();

@@ -40,9 +40,11 @@ export function readProblem(status: number, body: unknown): Problem {
       ? about.detail
       : text.problem.unexpected(status);
   const kind = type.split('/').at(-1) ?? '';
-  const words = kind === 'invalid' ? invalidInWords(detail) : detail;
   const field = kind === 'invalid' ? /^(\w+): /.exec(detail)?.[1] : undefined;
-  return new Problem(status, kind, dated(words), ...reasonsIn(about), field);
+  const words = kind === 'invalid' ? invalidInWords(detail) : detail;
+  // What is said of a file quotes it: its own lines, as they stand there.
+  const said = field === 'file' ? detail.slice('file: '.length) : dated(words);
+  return new Problem(status, kind, said, ...reasonsIn(about), field);
 }
 
 function reasonsIn(

@@ -1,7 +1,13 @@
 /** The calls about the schedule: needs, port calls, the plan, what is pinned and offered. */
 
 import { answer, client, everyPage, longestPage, page } from './client';
-import type { NewPin, NewPortCall, NewScheduleOffer, ScheduleSettings } from './types';
+import type {
+  NewPin,
+  NewPortCall,
+  NewScheduleOffer,
+  PortCallAmendment,
+  ScheduleSettings,
+} from './types';
 
 export const findSchedule = () => answer(client.GET('/api/v1/schedule'));
 
@@ -34,6 +40,23 @@ export const enterCall = (vessel: string, body: NewPortCall, key: string) =>
     client.POST('/api/v1/vessels/{id}/port-calls', {
       params: { path: { id: vessel }, header: { 'Idempotency-Key': key } },
       body,
+    }),
+  );
+
+/** Amends a call: what is left out stays. */
+export const amendCall = (vessel: string, call: string, body: PortCallAmendment) =>
+  answer(
+    client.PATCH('/api/v1/vessels/{id}/port-calls/{call}', {
+      params: { path: { id: vessel, call } },
+      body,
+    }),
+  );
+
+export const withdrawCall = (vessel: string, call: string) =>
+  answer(
+    client.POST('/api/v1/vessels/{id}/port-calls/{call}/withdraw', {
+      params: { path: { id: vessel, call } },
+      body: {},
     }),
   );
 

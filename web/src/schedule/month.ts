@@ -58,7 +58,7 @@ export function daysWith(rows: readonly Row[], from: string, to: string): Map<st
     return known;
   };
   for (const { needs, jobs, calls } of rows) {
-    for (const need of needs) on(need.due_on)?.dues.push(need);
+    for (const need of needs) if (need.urgency !== 'unknown') on(need.due_on)?.dues.push(need);
     for (const job of jobs) on(job.day)?.jobs.push(job);
     for (const call of calls) {
       const [arrives, leaves] = [dayAt(Date.parse(call.eta), 0), dayAt(Date.parse(call.etd), 0)];

@@ -19,11 +19,28 @@ export interface Row {
   calls: PortCall[];
   jobs: PlannedJob[];
   needs: AdjustmentNeed[];
+  /** Compasses whose order the plan no longer holds: it is being done, or waits. */
+  work: Work[];
   /** Whether the plan meets her needs: one of them not at all, one only late, or all in time. */
   met: 'not' | 'late' | 'in time';
 }
 
-const urgencies = ['overdue', 'urgent', 'soon', 'routine'] as const;
+/** A compass with its open order. */
+export type Work = AdjustmentNeed & { order: NonNullable<AdjustmentNeed['order']> };
+
+const urgencies = ['overdue', 'urgent', 'soon', 'unknown', 'routine'] as const;
+
+/** The open orders that no job of the plan stands for, the first to be done first. */
+export function workBeside(plan: SchedulePlan | null, needs: readonly AdjustmentNeed[]): Work[] {
+  const planned = new Set(
+    (plan?.jobs ?? [])
+      .filter((job) => job.state !== 'proposed')
+      .flatMap((job) => job.compasses.map(({ compass_id }) => compass_id)),
+  );
+  return needs
+    .filter((need): need is Work => need.order !== null && !planned.has(need.compass_id))
+    .sort((a, b) => a.order.from.localeCompare(b.order.from));
+}
 
 /** The vessels that have something to show: what is not met first, then by the next job. */
 export function rowsOf(
@@ -36,12 +53,21 @@ export function rowsOf(
     const known = rows.get(item.vessel_id);
     if (known) return known;
     const { vessel_id: vesselId, vessel_name: vesselName } = item;
-    const row: Row = { vesselId, vesselName, calls: [], jobs: [], needs: [], met: 'in time' };
+    const row: Row = {
+      vesselId,
+      vesselName,
+      calls: [],
+      jobs: [],
+      needs: [],
+      work: [],
+      met: 'in time',
+    };
     rows.set(vesselId, row);
     return row;
   };
   for (const call of calls) of(call).calls.push(call);
   for (const need of needs) of(need).needs.push(need);
+  for (const work of workBeside(plan, needs)) of(work).work.push(work);
   for (const job of plan?.jobs ?? []) {
     const row = of(job);
     row.jobs.push(job);

@@ -74,12 +74,13 @@ describe('the time line', () => {
 
 describe('the vessels of a plan', () => {
   const vessel = (name: string) => ({ vessel_id: name, vessel_name: name });
-  const job = (name: string, day: string) => ({ ...vessel(name), day }) as PlannedJob;
+  const job = (name: string, day: string) =>
+    ({ ...vessel(name), day, compasses: [{ compass_id: name }], state: 'offered' }) as PlannedJob;
   const plan = {
     jobs: [job('Late', '2026-12-20'), job('Early', '2026-12-01')],
     unscheduled: [{ ...vessel('Nowhere') }],
   } as unknown as SchedulePlan;
-  const needs = [{ ...vessel('Due'), due_on: '2026-12-10' } as AdjustmentNeed];
+  const needs = [{ ...vessel('Due'), due_on: '2026-12-10', order: null } as AdjustmentNeed];
   const calls = [{ ...vessel('Calls') } as PortCall, { ...vessel('Late') } as PortCall];
 
   test('come in the order in which someone must think of them', () => {
@@ -101,6 +102,18 @@ describe('the vessels of a plan', () => {
       ['Late', 'late'],
       ['Early', 'in time'],
     ]);
+  });
+
+  test('show an order that is being done, which the plan no longer holds', () => {
+    const order = (id: string) => ({ id, state: 'on_board', from: '2026-12-01T08:00:00Z' });
+    const need = (name: string) =>
+      ({
+        ...{ ...vessel(name), compass_id: name, due_on: '2026-12-10' },
+        order: order(name),
+      }) as AdjustmentNeed;
+    const rows = rowsOf(plan, [need('Early'), need('On board')], []);
+    const work = rows.flatMap((row) => row.work.map(({ vessel_name }) => vessel_name));
+    expect(work).toEqual(['On board']);
   });
 
   test('are there without a plan', () => {

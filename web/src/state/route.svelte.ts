@@ -11,6 +11,7 @@ const plain = [
   'reports',
   'notifications',
   'invitation',
+  'start',
 ] as const;
 
 /** The settings' pages, by the second word. */
@@ -65,6 +66,7 @@ export const binnaclesPath = '/binnacles';
 export const binnaclePath = (vessel: string, compass: string): string =>
   `${vesselPath(vessel)}?${new URLSearchParams({ compass }).toString()}#binnacle`;
 export const firmsPath = '/firms';
+export const startPath = '/start';
 export const reportsPath = '/reports';
 export const notificationsPath = '/notifications';
 export const settingsPath = '/settings';

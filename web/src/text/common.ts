@@ -109,6 +109,8 @@ export const document = {
   fleet: 'Fleet · Binnacle',
   vessel: (name: string) => `${name} · Binnacle`,
   signIn: 'Sign in · Binnacle',
+  firstRun: 'Set up · Binnacle',
+  start: 'Getting started · Binnacle',
   invitation: 'Set your password · Binnacle',
   notFound: 'Nothing here · Binnacle',
   alerts: 'Alerts · Binnacle',

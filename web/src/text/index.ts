@@ -30,6 +30,7 @@ export * from './reports';
 export * from './schedule';
 export * from './settings';
 export * from './signing';
+export * from './start';
 export * from './trust';
 export * from './vessel';
 export * from './vessels';

@@ -5,9 +5,6 @@ export const platform = {
   nameMissing: 'A company needs a name.',
   entering: 'Entering…',
   since: (day: string) => `since ${day}`,
-  firstUser: 'Its first user',
-  firstUserHow: 'Is made on the server; invites everyone else from the dashboard:',
-  personArguments: '--email NAME@EXAMPLE --name "FULL NAME"',
   health: {
     title: 'Health',
     lead: 'Whether requests can be served. Figures for Prometheus are at /metrics.',
@@ -21,8 +18,8 @@ export const platform = {
     none: 'No operator yet.',
     name: 'Name of the operator',
     submit: 'Enter the operator',
-    entered: (name: string) => `${name} is entered. Make its first user next.`,
-    command: 'binnacle-server admin create user --role admin --operator',
+    entered: (name: string) => `${name} is entered. Invite its first user next.`,
+    invite: (name: string) => `Invite an admin of ${name}`,
   },
   firms: {
     title: 'Adjuster firms',
@@ -30,8 +27,8 @@ export const platform = {
     none: 'No firm yet.',
     name: 'Name of the firm',
     submit: 'Enter the firm',
-    entered: (name: string) => `${name} is entered. Make its first adjuster next.`,
-    command: 'binnacle-server admin create adjuster --firm',
+    entered: (name: string) => `${name} is entered. Invite its first adjuster next.`,
+    invite: (name: string) => `Invite an adjuster of ${name}`,
   },
   together: {
     title: 'Who works with whom',

@@ -48,6 +48,9 @@ export const schedule = {
     job: (vessel: string, day: string, port: string, firm: string, state: string) =>
       `${vessel}, ${day} at ${port} by ${firm}, ${state}`,
     dueOn: (compass: string, day: string) => `${compass} is due by ${day}`,
+    dueUnknown: (compass: string) => `${compass}: no adjustment on record`,
+    work: (vessel: string, state: string, port: string, day: string) =>
+      `${vessel}: ${state}, ${port}, ${day}`,
     met: { not: 'not scheduled', late: 'late' },
     notInPort: 'She is not in port then: a job belongs into a port call.',
     legend: {
@@ -230,6 +233,17 @@ export const schedule = {
   calls: {
     title: 'Port calls',
     lead: 'The plan is as good as the calls it knows. A file that is sent again changes only what is different in it.',
+    ahead: 'Calls ahead',
+    noneAhead: 'No port call is entered.',
+    actions: 'Change',
+    amend: 'Amend',
+    amendOf: (vessel: string, port: string) => `Amend ${vessel}’s call at ${port}`,
+    save: 'Save',
+    saving: 'Saving…',
+    withdraw: 'Withdraw',
+    withdrawOf: (vessel: string, port: string) => `Withdraw ${vessel}’s call at ${port}`,
+    withdrawQuestion: 'The call no longer counts; the plan follows.',
+    sample: 'Download a sample file',
     add: 'Enter a call',
     vessel: 'Vessel',
     choose: 'Choose…',
@@ -252,7 +266,7 @@ export const schedule = {
     entered: 'The call is entered.',
     file: 'From a file',
     fileLead:
-      'A CSV for the whole fleet, with the columns id, vessel, port, eta, etd; or a calendar (.ics) of one vessel.',
+      'A CSV for the whole fleet, with the columns vessel, port, eta, etd; or a calendar (.ics) of one vessel. A vessel stands by its name or IMO number, a port by its name or UN/LOCODE, a time as 2026-12-08T06:00Z.',
     which: 'File, .csv or .ics',
     calendarOf: 'Whose calendar it is',
     replace: 'What came from such a file before and is not in this one is withdrawn',

@@ -137,6 +137,7 @@ export const settings = {
     missing: 'Enter a name and an e-mail address.',
     invitation: (name: string, until: string) =>
       `Give this to ${name}. It works once, until ${until}, and is shown only now.`,
+    mailed: (name: string) => `${name} also gets the link by mail.`,
     link: 'Link',
     code: 'Code',
     qr: (name: string) => `QR code with the link for ${name}`,

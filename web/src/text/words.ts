@@ -32,6 +32,7 @@ export const alertCause = {
 
 export const urgency = {
   routine: 'Routine',
+  unknown: 'Not known',
   soon: 'Soon',
   urgent: 'Urgent',
   overdue: 'Overdue',

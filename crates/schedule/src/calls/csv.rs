@@ -3,8 +3,9 @@
 //! The first line names the columns: `id`, `vessel`, `port`, `eta`, `etd`, and
 //! optionally `berth`, `eta_uncertainty_h`, `etd_uncertainty_h`,
 //! `berth_heading_deg`. A file for one ship needs no `vessel`, and a call
-//! without `id` is named after its port and ETA. Fields are separated by
-//! commas, or by semicolons with decimal commas, as spreadsheets of much of
+//! without `id` is named after its port and ETA. A port stands by its UN/LOCODE
+//! or its name. A time may leave out its seconds, but not its zone. Fields are
+//! separated by commas, or by semicolons with decimal commas, as spreadsheets of much of
 //! Europe write them. Past calls are left out and counted.
 //!
 //! Invariants: memory is bounded by one line and the calls read, however large
@@ -235,6 +236,33 @@ fn split_cells(text: &str, separator: char, line: usize) -> Result<Vec<String>, 
     Ok(cells.iter().map(|cell| cell.trim().to_owned()).collect())
 }
 
+/// Parses an instant, whose seconds may be left out and whose date and time a blank may separate.
+fn parse_instant(text: &str) -> Result<Instant, String> {
+    let mut written = text.to_owned();
+    if text.is_char_boundary(16) && text.as_bytes().get(13) == Some(&b':') {
+        let (minutes, rest) = text.split_at(16);
+        let seconds = if rest.starts_with(':') { "" } else { ":00" };
+        written = format!("{}{seconds}{rest}", minutes.replacen(' ', "T", 1));
+    }
+    Instant::parse(&written).map_err(|error| error.to_string().replace(&written, text))
+}
+
+/// Finds the port that a cell names, by its code or its name.
+fn find_port(text: &str) -> Result<PortCode, String> {
+    match ports::named(text)[..] {
+        [port] => Ok(port.code),
+        [] => Err(PortCode::parse(text).map_or_else(
+            |_| format!("{text:?} is neither a UN/LOCODE, as NLRTM, nor the name of a sea port"),
+            ports::describe_unknown,
+        )),
+        ref several => {
+            let codes: Vec<String> = several.iter().map(|port| port.code.to_string()).collect();
+            let codes = codes.join(", ");
+            Err(format!("{text:?} is the name of several ports ({codes}): write the code"))
+        }
+    }
+}
+
 fn parse_header(header: Vec<String>, line: usize) -> Result<Vec<String>, FileError> {
     for (at, name) in header.iter().enumerate() {
         if !COLUMNS.contains(&name.as_str()) {
@@ -274,7 +302,7 @@ fn parse_row(
     };
     let needed = |name: &str| cell(name).ok_or_else(|| FileError::new(line, name, "is empty"));
     let instant = |name: &str| {
-        Instant::parse(needed(name)?).map_err(|error| FileError::new(line, name, error.to_string()))
+        parse_instant(needed(name)?).map_err(|what| FileError::new(line, name, what))
     };
     // Where semicolons separate fields, a comma may be the decimal point.
     let read = |text: &str| match separator {
@@ -290,11 +318,7 @@ fn parse_row(
             format!("{text:?} is not a number"),
         )),
     };
-    let port = PortCode::parse(needed("port")?)
-        .map_err(|error| FileError::new(line, "port", error.to_string()))?;
-    if ports::find(port).is_none() {
-        return Err(FileError::new(line, "port", ports::describe_unknown(port)));
-    }
+    let port = find_port(needed("port")?).map_err(|what| FileError::new(line, "port", what))?;
     let (eta, etd) = (instant("eta")?, instant("etd")?);
     let vessel = cell("vessel").or(vessel);
     Ok(PortCall {

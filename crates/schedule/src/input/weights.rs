@@ -13,7 +13,7 @@ pub const JOB_H: f64 = 3.0;
 pub struct ByUrgency {
     /// For routine needs.
     pub routine: Eur,
-    /// For needs due soon.
+    /// For needs due soon, or on a day that is unknown.
     pub soon: Eur,
     /// For urgent needs.
     pub urgent: Eur,
@@ -58,7 +58,8 @@ impl ByUrgency {
     pub fn weight(&self, urgency: Urgency) -> Eur {
         match urgency {
             Urgency::Routine => self.routine,
-            Urgency::Soon => self.soon,
+            // Its interval may end on any day.
+            Urgency::Unknown | Urgency::Soon => self.soon,
             Urgency::Urgent => self.urgent,
             Urgency::Overdue => self.overdue,
         }

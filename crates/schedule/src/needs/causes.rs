@@ -88,9 +88,10 @@ pub(super) fn find_causes(
                         months.get()
                     ),
                 ),
+                // The interval may end on any day: one to arrange an adjustment by.
                 None => (
                     CauseKind::NeverAdjusted,
-                    today,
+                    add_days(today, terms.soon_days),
                     "no adjustment is on record".to_owned(),
                 ),
             }),

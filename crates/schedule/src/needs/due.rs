@@ -13,11 +13,13 @@ use serde::{Deserialize, Serialize};
 pub enum Urgency {
     /// Not due soon.
     Routine,
+    /// No adjustment is on record, and nothing else is due before one can be arranged.
+    Unknown,
     /// Due soon.
     Soon,
     /// Due very soon, or the card cannot be trusted.
     Urgent,
-    /// The due date has passed, or there never was an adjustment.
+    /// The due date has passed.
     Overdue,
 }
 
@@ -49,24 +51,10 @@ pub fn due(
     let first = causes.first()?;
     Some(Due {
         on: first.due,
-        urgency: find_urgency(&causes, terms, today),
-        reason: describe_reason(first, &causes),
+        urgency: find_urgency(first, terms, today),
+        reason: first.reason.clone(),
         causes,
     })
-}
-
-/// Returns the first cause's reason. A missing adjustment comes before every other
-/// cause, so a deviation over its limit is added to it.
-fn describe_reason(first: &Cause, causes: &[Cause]) -> String {
-    let over = causes
-        .iter()
-        .find(|cause| cause.kind == CauseKind::OverLimit);
-    match over {
-        Some(over) if first.kind == CauseKind::NeverAdjusted => {
-            format!("{}; {}", first.reason, over.reason)
-        }
-        _ => first.reason.clone(),
-    }
 }
 
 impl Terms {
@@ -90,13 +78,11 @@ impl Terms {
 }
 
 /// Returns the urgency of a need. An untrustworthy card makes it urgent when it would
-/// be due soon. A compass without an adjustment on record is due today on every day: it is overdue.
-fn find_urgency(causes: &[Cause], terms: &Terms, today: NaiveDate) -> Urgency {
-    let never = |cause: &Cause| cause.kind == CauseKind::NeverAdjusted;
-    let first = match causes.first() {
-        Some(first) if !causes.iter().any(never) => first,
-        _ => return Urgency::Overdue,
-    };
+/// be due soon. Without an adjustment on record, no interval is known to have ended.
+fn find_urgency(first: &Cause, terms: &Terms, today: NaiveDate) -> Urgency {
+    if first.kind == CauseKind::NeverAdjusted {
+        return Urgency::Unknown;
+    }
     let distrusted = matches!(
         first.kind,
         CauseKind::OverLimit | CauseKind::Change | CauseKind::FailedVerification

@@ -103,7 +103,7 @@ fn check<'a>(input: &'a Input, crews: &'a [Crew<'a>], job: &Job<'a>) -> Confirma
     let ways: Vec<(usize, Quote)> = ways.into_iter().flatten().collect();
     if let Some((_, quote)) = ways.first() {
         // A late one remains a candidate of the job.
-        if quote.late_days > 0 && !job.is_overdue(input.now.utc_date()) {
+        if quote.late_days > 0 && !job.may_be_any_day(input.now.utc_date()) {
             return Confirmation::Released {
                 cause: format!("{day} is after the due date, {}", job.due()),
                 only_late: true,

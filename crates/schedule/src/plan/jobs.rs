@@ -42,9 +42,10 @@ impl Job<'_> {
             .unwrap_or(Urgency::Routine)
     }
 
-    /// Returns true if the job is late already, however soon it is done.
-    pub(super) fn is_overdue(&self, today: NaiveDate) -> bool {
-        self.due() < today || self.urgency() == Urgency::Overdue
+    /// Returns true if the job may be done on any day: it is late already, however soon it is
+    /// done, or the day on which its interval ends is unknown.
+    pub(super) fn may_be_any_day(&self, today: NaiveDate) -> bool {
+        self.due() < today || matches!(self.urgency(), Urgency::Overdue | Urgency::Unknown)
     }
 
     pub(super) fn ids(&self) -> Vec<String> {

@@ -158,7 +158,7 @@ pub(super) fn quote(
         !in_hours || window.to - window.from >= length_s,
         Obstacle::LeadTime,
     );
-    let overdue = job.is_overdue(today);
+    let overdue = job.may_be_any_day(today);
     let in_cap = |most: u32| late_days <= i64::from(most);
     let allowed = overdue || confirmed || weights.late_days.is_none_or(in_cap);
     unless(allowed, Obstacle::AfterDue);
@@ -177,7 +177,8 @@ pub(super) fn quote(
     let waits = (day - today).num_days().clamp(0, MAX_DAYS);
     let early_days = match urgency {
         Urgency::Routine | Urgency::Soon => (job.due() - day).num_days().clamp(0, MAX_DAYS),
-        Urgency::Urgent | Urgency::Overdue => 0,
+        // No interval is known of which days could be lost.
+        Urgency::Unknown | Urgency::Urgent | Urgency::Overdue => 0,
     };
     // Past lateness cannot be changed: only days to come count.
     let late_to_come = (day - job.due().max(today)).num_days().clamp(0, MAX_DAYS);
@@ -212,9 +213,9 @@ pub(super) fn max_waiting_cost(input: &Input, job: &Job<'_>) -> i64 {
     let days = |from: NaiveDate, to: NaiveDate| (to - from).num_days().clamp(0, MAX_DAYS);
     let early = match urgency {
         Urgency::Routine | Urgency::Soon => days(today, job.due()),
-        Urgency::Urgent | Urgency::Overdue => 0,
+        Urgency::Unknown | Urgency::Urgent | Urgency::Overdue => 0,
     };
-    let at_all = !job.is_overdue(today) && weights.late_days.is_none();
+    let at_all = !job.may_be_any_day(today) && weights.late_days.is_none();
     let late = days(job.due().max(today), ends) * weights.late_eur_day.cents()
         + i64::from(at_all) * weights.unmet_eur.weight(urgency).cents();
     let waiting = days(today, ends) * weights.waiting_eur_day.weight(urgency).cents();

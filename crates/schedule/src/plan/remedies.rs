@@ -113,7 +113,7 @@ impl<'a> Remedies<'a> {
         let late_days = (day - self.job.due()).num_days();
         let in_cap = |most: u32| late_days <= i64::from(most);
         late_days <= 0
-            || self.job.is_overdue(self.input.now.utc_date())
+            || self.job.may_be_any_day(self.input.now.utc_date())
             || !self.planned_late && self.input.weights.late_days.is_none_or(in_cap)
     }
 
@@ -356,7 +356,7 @@ impl<'a> Remedies<'a> {
     /// date in the past, or before `first`, is not offered.
     fn call_at(&self, first: NaiveDate, place: &str) -> String {
         let (today, due) = (self.input.now.utc_date(), self.job.due());
-        if due <= today || self.job.is_overdue(today) || first > due {
+        if due <= today || self.job.may_be_any_day(today) || first > due {
             format!("a call as soon as possible at {place}")
         } else {
             format!("a call by {due} at {place}")
@@ -379,7 +379,7 @@ impl<'a> Remedies<'a> {
                 if self.excess_price(firm, port).is_some() {
                     continue;
                 }
-                if day <= due || self.job.is_overdue(self.input.now.utc_date()) {
+                if day <= due || self.job.may_be_any_day(self.input.now.utc_date()) {
                     in_time.insert(port);
                 } else {
                     let first = later.entry(port).or_insert(day);

@@ -34,7 +34,7 @@ pub(super) fn unscheduled(
     let open = jobs.iter().zip(made).zip(&candidates.problem.unmet);
     let open = open.filter(|((job, candidate), _)| match candidate {
         None => true,
-        Some(candidate) => candidate.quote.late_days > 0 && !job.is_overdue(input.now.utc_date()),
+        Some(candidate) => candidate.quote.late_days > 0 && !job.may_be_any_day(input.now.utc_date()),
     });
     open.map(|((job, candidate), unmet)| {
         let mut explanation = Explanation {
@@ -77,7 +77,7 @@ impl Explanation<'_> {
 
     fn explain_calls(&mut self) {
         let job = self.remedies.job;
-        let overdue = job.is_overdue(self.remedies.input.now.utc_date());
+        let overdue = job.may_be_any_day(self.remedies.input.now.utc_date());
         let in_time =
             |call: &&PortCall| overdue || call.eta.date(quote::port_of(call).zone) <= job.due();
         let has_one = job.calls.iter().any(in_time);

@@ -84,6 +84,24 @@ pub fn describe_unknown(code: PortCode) -> String {
     }
 }
 
+/// Finds the ports that words name: by a code, alone or behind the name in brackets, or by the name.
+/// Several may share a name.
+pub fn named(words: &str) -> Vec<&'static Port> {
+    let words = words.trim();
+    let bracketed = words
+        .rsplit_once('(')
+        .and_then(|(_, code)| code.strip_suffix(')'));
+    let by_code = |text: &str| PortCode::parse(text).ok().and_then(find);
+    if let Some(port) = bracketed.and_then(by_code).or_else(|| by_code(words)) {
+        return vec![port];
+    }
+    let is_name = |name: &str| name.eq_ignore_ascii_case(words);
+    all()
+        .iter()
+        .filter(|port| is_name(port.name) || is_name(port.plain_name))
+        .collect()
+}
+
 /// Finds ports whose code or name begins with a text, then those whose name
 /// contains it elsewhere; at most `limit`.
 pub fn search(text: &str, limit: usize) -> Vec<&'static Port> {
@@ -184,6 +202,20 @@ mod tests {
         assert!(all().len() > 10_000);
         assert!(all().is_sorted_by(|one, next| one.code < next.code));
         assert!(all().iter().all(|port| !port.name.contains('"')));
+    }
+
+    #[test]
+    fn a_port_is_found_by_its_code_or_its_name_and_a_shared_name_finds_all() {
+        let codes = |words: &str| -> Vec<String> {
+            named(words).iter().map(|port| port.code.to_string()).collect()
+        };
+        for words in ["ESBIO", "es bio", "Bilbao", "bilbao", "Bilbao (ESBIO)"] {
+            assert_eq!(codes(words), ["ESBIO"], "{words}");
+        }
+        assert_eq!(codes("Malaga"), codes("Málaga"));
+        // There is one in the state of New York too.
+        assert_eq!(codes("Rotterdam"), ["NLRTM", "USRAJ"]);
+        assert!(codes("Rotterdm").is_empty());
     }
 
     #[test]

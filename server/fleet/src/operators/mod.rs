@@ -2,8 +2,10 @@
 //!
 //! Invariant: only a platform admin sees that there are others.
 
+mod first_run;
 mod store;
 
+pub use first_run::make_code as make_first_run_code;
 pub use store::{all, create, exists};
 
 use axum::extract::{FromRef, State};
@@ -15,6 +17,8 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Valid, text};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::OperatorId;
+use binnacle_platform::session::Role;
+use binnacle_platform::users::{self, Invitation, NewCompanyUser};
 use serde::{Deserialize, Serialize};
 use store::Operator;
 use utoipa::ToSchema;
@@ -30,6 +34,8 @@ where
     OpenApiRouter::new()
         .routes(routes!(list_operators, create_operator))
         .routes(routes!(find_operator))
+        .routes(routes!(invite_admin))
+        .merge(first_run::router())
 }
 
 /// A company to be entered.
@@ -73,7 +79,7 @@ async fn list_operators(
 
 /// Enter an operator
 ///
-/// For platform admins. Its first people are made by `binnacle-server admin create user`.
+/// For platform admins, who then invite its first admin.
 #[utoipa::path(post, path = "/operators", tag = "platform", params(Key),
     request_body = NewCompany,
     responses((status = 201, body = Operator), (status = 401, body = Problem),
@@ -114,6 +120,28 @@ async fn find_operator(
     Id(id): Id<OperatorId>,
 ) -> Result<Json<Operator>> {
     found(&app, id).await
+}
+
+/// Invite an operator's first admin
+///
+/// For platform admins in a session. The admin invites the operator's other users.
+#[utoipa::path(post, path = "/operators/{id}/users", tag = "platform",
+    params(("id" = OperatorId, Path)), request_body = NewCompanyUser,
+    responses((status = 201, body = Invitation), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "The e-mail address already has an account", body = Problem),
+              (status = 422, body = Problem)))]
+async fn invite_admin(
+    State(app): State<App>,
+    request: RequestContext,
+    admin: Platform,
+    Id(id): Id<OperatorId>,
+    Valid(new): Valid<NewCompanyUser>,
+) -> Result<(StatusCode, Json<Invitation>)> {
+    admin.must_be_in_person()?;
+    let _operator = found(&app, id).await?;
+    let invited = users::invite(&app, &request, &new, id.into(), Role::Admin).await?;
+    Ok((StatusCode::CREATED, Json(invited)))
 }
 
 async fn found(app: &App, id: OperatorId) -> Result<Json<Operator>> {

@@ -1,6 +1,7 @@
 //! HTTP API of vessels, each assembled with its compasses, current model and open alerts.
 
 mod amendment;
+mod csv_upload;
 mod service;
 
 pub use service::ServiceChanged;
@@ -16,6 +17,7 @@ use axum::http::StatusCode;
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
+use binnacle_platform::db::Tx;
 use binnacle_platform::error::{Problem, Result};
 use binnacle_platform::http::{Id, IfMatch, Json, Page, Params, Valid, Version, Versioned};
 use binnacle_platform::idempotency::{self, Key};
@@ -36,6 +38,7 @@ where
     OpenApiRouter::new()
         .routes(routes!(list_vessels, create_vessel))
         .routes(routes!(find_vessel, amend_vessel))
+        .merge(csv_upload::router())
 }
 
 /// A vessel, with the state of its compass.
@@ -160,12 +163,25 @@ async fn create_vessel(
         .await?;
     if id == new_id.0 {
         request.concerns_vessel(new_id, None);
-        vessels::insert(&mut tx, writer.operator, new_id, &new, now).await?;
-        compasses::insert_standard(&mut tx, new_id, now).await?;
+        enter(&mut tx, writer.operator, new_id, &new, now).await?;
     }
     tx.commit().await?;
     let vessel = assemble(&app, writer.operator, VesselId(id)).await?;
     Ok((StatusCode::CREATED, vessel))
+}
+
+/// Stores a vessel with its standard compass.
+async fn enter(
+    tx: &mut Tx,
+    operator: OperatorId,
+    id: VesselId,
+    new: &NewVessel,
+    now: Time,
+) -> Result<()> {
+    vessels::require_free_imo(tx, operator, new.imo_number.as_deref(), id).await?;
+    vessels::insert(tx, operator, id, new, now).await?;
+    compasses::insert_standard(tx, id, now).await?;
+    Ok(())
 }
 
 /// Find a vessel
@@ -208,7 +224,13 @@ async fn amend_vessel(
         }
         None => Vec::new(),
     };
-    vessels::update(&mut tx, id, &amendment.applied_to(vessel)?).await?;
+    let former = vessel.imo_number.clone();
+    let amended = amendment.applied_to(vessel)?;
+    if amended.imo_number != former {
+        let number = amended.imo_number.as_deref();
+        vessels::require_free_imo(&mut tx, writer.operator, number, id).await?;
+    }
+    vessels::update(&mut tx, id, &amended).await?;
     tx.commit().await?;
     app.work.notify_one();
     for event in events_out {

@@ -3,6 +3,7 @@
 //! Invariants:
 //!
 //! - A vessel is found only together with its operator.
+//! - An IMO number is one vessel's within an operator, but for duplicates from before that rule.
 //! - A vessel out of service is found by its id, with all its records. The fleet's lists leave it
 //!   out.
 
@@ -12,7 +13,7 @@ mod store;
 pub use store::{
     VesselNames, VesselRow, find_owner, find_row, is_in_service, must_be_in_fleet, names,
 };
-pub(crate) use store::{insert, list, lock, set_out_of_service, update};
+pub(crate) use store::{insert, list, lock, require_free_imo, set_out_of_service, update};
 
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::http::{optional_text, text};

@@ -139,6 +139,44 @@ pub async fn names(db: &Db, operator: OperatorId) -> Result<Vec<VesselNames>> {
     )
 }
 
+/// Refuses an IMO number that another vessel of the operator has. Other entries of vessels wait
+/// for the transaction.
+///
+/// # Errors
+/// [`Error::Invalid`] with the name of the other vessel.
+pub(crate) async fn require_free_imo(
+    tx: &mut Tx,
+    operator: OperatorId,
+    imo_number: Option<&str>,
+    of: VesselId,
+) -> error::Result<()> {
+    let Some(number) = imo_number else {
+        return Ok(());
+    };
+    execute!(
+        &mut *tx,
+        "UPDATE operators SET name = name WHERE id = $1",
+        operator
+    )?;
+    let other = row!(
+        in tx,
+        (String,),
+        "SELECT name FROM vessels
+         WHERE operator_id = $1 AND imo_number = $2 AND id <> $3
+         ORDER BY id LIMIT 1",
+        operator,
+        number,
+        of
+    )?;
+    match other {
+        None => Ok(()),
+        Some((name,)) => Err(Error::Invalid {
+            field: "imo_number",
+            detail: format!("{number} is the IMO number of {name}"),
+        }),
+    }
+}
+
 pub(crate) async fn insert(
     tx: &mut Tx,
     operator: OperatorId,
@@ -191,7 +229,8 @@ pub(crate) async fn update(tx: &mut Tx, id: VesselId, amended: &NewVessel) -> Re
     execute!(
         tx,
         "UPDATE vessels SET name = $2, imo_number = $3, call_sign = $4, flag = $5, degaussing = $6,
-             sister_class = $7
+             sister_class = $7,
+             imo_shared = CASE WHEN imo_number = $3 THEN imo_shared ELSE FALSE END
          WHERE id = $1",
         id,
         amended.name.as_str(),

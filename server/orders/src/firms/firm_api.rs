@@ -4,14 +4,16 @@ use super::store::{self, Firm};
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_fleet::operators::{self, NewCompany};
-use binnacle_platform::access::{Caller, Platform};
+use binnacle_platform::access::{Caller, Founder, Platform};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Valid, text};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{FirmId, OperatorId};
+use binnacle_platform::session::Role;
 use binnacle_platform::tenants::Tenant;
+use binnacle_platform::users::{self, Invitation, NewCompanyUser};
 use serde::Serialize;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -25,6 +27,7 @@ where
     OpenApiRouter::new()
         .routes(routes!(list_firms, create_firm))
         .routes(routes!(find_firm))
+        .routes(routes!(invite_adjuster))
         .routes(routes!(engage_firm, dismiss_firm))
 }
 
@@ -56,31 +59,63 @@ async fn list_firms(State(app): State<App>, caller: Caller, page: Page) -> Resul
 
 /// Create a firm
 ///
-/// For platform admins. Its first users are created by `binnacle-server admin create adjuster`.
+/// For platform admins, and for an operator's admin: then the firm works for that operator alone,
+/// until a platform admin engages it for another.
 #[utoipa::path(post, path = "/firms", tag = "platform", params(Key), request_body = NewCompany,
     responses((status = 201, body = Firm), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn create_firm(
     State(app): State<App>,
     request: RequestContext,
-    admin: Platform,
+    founder: Founder,
     key: Key,
     Valid(new): Valid<NewCompany>,
 ) -> Result<(StatusCode, Json<Firm>)> {
-    let admin = admin.must_be_writer()?;
     let request_hash = idempotency::request_hash("firm", &new)?;
     let name = text("name", &new.name)?;
     let now = app.clock.now().into();
     let wanted = FirmId::new();
     let mut tx = request.begin().await?;
     let made = key
-        .once(&mut tx, admin, &request_hash, wanted.0, now)
+        .once(&mut tx, founder.key_owner, &request_hash, wanted.0, now)
         .await?;
     if made == wanted.0 {
-        store::insert(&mut tx, wanted, &name, now).await?;
+        store::insert(&mut tx, wanted, &name, founder.operator, now).await?;
+        if let Some(operator) = founder.operator {
+            store::engage(&mut tx, operator, wanted, now).await?;
+        }
     }
     tx.commit().await?;
-    Ok((StatusCode::CREATED, found(&app, None, FirmId(made)).await?))
+    let who = founder.operator.map(Tenant::Operator);
+    Ok((StatusCode::CREATED, found(&app, who, FirmId(made)).await?))
+}
+
+/// Invite an adjuster of a firm
+///
+/// For platform admins, and for an admin of the operator that entered the firm while it works for
+/// no other. In a session, not with a token.
+#[utoipa::path(post, path = "/firms/{id}/users", tag = "adjusting",
+    params(("id" = FirmId, Path)), request_body = NewCompanyUser,
+    responses((status = 201, body = Invitation), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "The e-mail address already has an account", body = Problem),
+              (status = 422, body = Problem)))]
+async fn invite_adjuster(
+    State(app): State<App>,
+    request: RequestContext,
+    founder: Founder,
+    Id(id): Id<FirmId>,
+    Valid(new): Valid<NewCompanyUser>,
+) -> Result<(StatusCode, Json<Invitation>)> {
+    founder.must_be_in_person()?;
+    let who = founder.operator.map(Tenant::Operator);
+    let Json(firm) = found(&app, who, id).await?;
+    if founder.operator.is_some() && !firm.is_own {
+        let shared = "only a platform admin invites users of a firm that others work with too";
+        return Err(Error::Forbidden(shared));
+    }
+    let invited = users::invite(&app, &request, &new, id.into(), Role::Adjuster).await?;
+    Ok((StatusCode::CREATED, Json(invited)))
 }
 
 /// See a firm

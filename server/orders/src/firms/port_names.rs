@@ -1,28 +1,18 @@
 //! Ports as orders name them.
 
 use binnacle_platform::time::Time;
-use binnacle_schedule::ports::{self, Port, PortCode};
+use binnacle_schedule::ports::{self, Port};
 use binnacle_schedule::time::Instant;
 use binnacle_schedule::zone::Zone;
 use chrono::NaiveDate;
 
 /// Port that an order names: by its code, alone or behind its name, or by its name.
 pub fn named_port(words: &str) -> Option<&'static Port> {
-    let code = words
-        .rsplit_once('(')
-        .and_then(|(_, code)| code.strip_suffix(')'));
-    let by_code = |text: &str| PortCode::parse(text).ok().and_then(ports::find);
-    let named = |port: &&Port| {
-        let words = words.trim();
-        port.name.eq_ignore_ascii_case(words) || port.plain_name.eq_ignore_ascii_case(words)
-    };
-    code.and_then(by_code)
-        .or_else(|| by_code(words))
-        .or_else(|| {
-            // A name shared by several ports is ambiguous.
-            let mut all = ports::all().iter().filter(named);
-            all.next().filter(|_| all.next().is_none())
-        })
+    // A name shared by several ports is ambiguous.
+    match ports::named(words)[..] {
+        [port] => Some(port),
+        _ => None,
+    }
 }
 
 /// Key of a port, however its name is written: its code if it is known.

@@ -18,21 +18,31 @@ pub(super) struct Firm {
     pub(super) name: String,
     /// Time of its creation here.
     pub(super) created_at: Time,
+    /// True if your operator has entered the firm and it works for no other: then your admins
+    /// invite its users.
+    pub(super) is_own: bool,
 }
 
 /// Creates a firm.
 pub async fn create(tx: &mut Tx, name: &str, now: Time) -> Result<FirmId> {
     let id = FirmId::new();
-    insert(tx, id, name, now).await?;
+    insert(tx, id, name, None, now).await?;
     Ok(id)
 }
 
-pub(super) async fn insert(tx: &mut Tx, id: FirmId, name: &str, now: Time) -> Result<()> {
+pub(super) async fn insert(
+    tx: &mut Tx,
+    id: FirmId,
+    name: &str,
+    founder: Option<OperatorId>,
+    now: Time,
+) -> Result<()> {
     execute!(
         tx,
-        "INSERT INTO firms (id, name, created_at) VALUES ($1, $2, $3)",
+        "INSERT INTO firms (id, name, founded_by, created_at) VALUES ($1, $2, $3, $4)",
         id,
         name,
+        founder,
         now
     )?;
     Ok(())
@@ -196,7 +206,11 @@ pub(super) async fn list(
     rows!(
         db,
         Firm,
-        "SELECT id, name, created_at FROM firms
+        "SELECT id, name, created_at,
+                COALESCE(founded_by = $1 AND NOT EXISTS (
+                    SELECT 1 FROM operator_firms w
+                    WHERE w.firm_id = firms.id AND w.operator_id <> $1), FALSE) AS is_own
+         FROM firms
          WHERE ($1 IS NULL OR EXISTS (SELECT 1 FROM operator_firms w
                                       WHERE w.operator_id = $1 AND w.firm_id = firms.id))
            AND ($2 IS NULL OR id = $2)
@@ -215,7 +229,11 @@ pub(super) async fn find(db: &Db, who: Option<Tenant>, id: FirmId) -> Result<Opt
     row!(
         db,
         Firm,
-        "SELECT id, name, created_at FROM firms
+        "SELECT id, name, created_at,
+                COALESCE(founded_by = $1 AND NOT EXISTS (
+                    SELECT 1 FROM operator_firms w
+                    WHERE w.firm_id = firms.id AND w.operator_id <> $1), FALSE) AS is_own
+         FROM firms
          WHERE ($1 IS NULL OR EXISTS (SELECT 1 FROM operator_firms w
                                       WHERE w.operator_id = $1 AND w.firm_id = firms.id))
            AND ($2 IS NULL OR id = $2)

@@ -291,6 +291,7 @@ pub(super) async fn list_due_dates(
          JOIN vessels v ON v.id = n.vessel_id
          JOIN compasses c ON c.vessel_id = n.vessel_id AND c.id = n.compass_id
          WHERE v.operator_id = $1 AND ($2 IS NULL OR n.vessel_id = $2)
+           AND n.urgency <> 'unknown'
          ORDER BY n.due_on, n.compass_id",
         operator,
         vessel

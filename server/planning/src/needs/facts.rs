@@ -1,5 +1,6 @@
 //! Facts about a compass that the adjustment rules use, assembled from stored data.
 
+use super::order::OpenOrder;
 use super::over_limit_since::DeviationHistory;
 use super::prediction::PredictedDeviation;
 use binnacle_compass::field::{FieldModel, field};
@@ -43,6 +44,8 @@ pub struct Facts {
     pub compass: Compass,
     /// Greatest deviation at each place and day to come.
     pub predicted: Vec<PredictedDeviation>,
+    /// Work order of the compass that is not over.
+    pub order: Option<OpenOrder>,
     /// History of the deviation at the vessel's position, where it differs from the stored one.
     pub(super) changed_history: Option<DeviationHistory>,
 }

@@ -2,6 +2,7 @@
 //! storage of what they found.
 
 use super::facts::{Completed, Facts, Stored, UpcomingCall, Work, assess_compass};
+use super::order::{OpenOrder, load_open_orders};
 use super::over_limit_since::{self, DeviationHistory};
 use crate::port_calls;
 use binnacle_compass::logbook::LogbookKind;
@@ -21,14 +22,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use uuid::Uuid;
 
 /// Vessel and compass: the key of what is stored of a compass.
-type CompassKey = (VesselId, CompassId);
+pub(super) type CompassKey = (VesselId, CompassId);
 
 /// Vessels of an operator in a range of ids.
 #[derive(Clone, Copy)]
-struct Which {
-    operator: OperatorId,
-    first: VesselId,
-    last: VesselId,
+pub(super) struct Which {
+    pub(super) operator: OperatorId,
+    pub(super) first: VesselId,
+    pub(super) last: VesselId,
 }
 
 /// Stored records of a fleet, by vessel or by compass.
@@ -38,6 +39,7 @@ struct FleetRecords {
     particulars: BTreeMap<VesselId, Particulars>,
     work: BTreeMap<VesselId, Vec<Work>>,
     completed: BTreeMap<CompassKey, Completed>,
+    orders: BTreeMap<CompassKey, OpenOrder>,
     failed: BTreeMap<CompassKey, (Time, f64)>,
     models: Vec<StoredModel>,
     findings: BTreeMap<CompassKey, Findings>,
@@ -96,6 +98,7 @@ impl FleetRecords {
             particulars: load_particulars(db, which).await?,
             work: load_work(db, which).await?,
             completed: load_completed(db, which).await?,
+            orders: load_open_orders(db, which).await?,
             failed: load_failed(db, which).await?,
             models: models::current_of_fleet(db, operator, first, last).await?,
             findings: load_findings(db, which).await?,
@@ -150,6 +153,7 @@ impl FleetRecords {
                 licence: particulars.licence.clone(),
                 compass,
                 predicted,
+                order: self.orders.get(&key).cloned(),
                 changed_history,
             })
         });

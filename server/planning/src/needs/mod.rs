@@ -6,6 +6,7 @@
 mod facts;
 mod load;
 mod need;
+mod order;
 mod over_limit_since;
 mod prediction;
 

@@ -1,6 +1,7 @@
 //! A need as the API shows it.
 
 use super::facts::Facts;
+use super::order::OpenOrder;
 use super::prediction::PredictedDeviation;
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_schedule::needs::{CauseKind, Due, Terms, Urgency, due};
@@ -39,6 +40,9 @@ pub struct Need {
     /// Greatest deviation predicted for each place and day to come, where the model's band is
     /// narrow enough.
     pub predicted: Vec<PredictedDeviation>,
+    /// Work order of the compass that is not over: what is under way, or waits for somebody.
+    #[schema(required)]
+    pub order: Option<OpenOrder>,
     /// Particulars of the vessel that are unknown; a rule that depends on one binds the vessel.
     #[schema(example = json!(["gross_tonnage"]))]
     pub not_known: Vec<&'static str>,
@@ -121,6 +125,7 @@ impl Need {
             causes: causes.collect(),
             adjusted_on: facts.compass.adjusted_on,
             predicted: facts.predicted.clone(),
+            order: facts.order.clone(),
             not_known: facts.unknown_particulars(),
         }
     }

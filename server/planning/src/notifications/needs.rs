@@ -105,7 +105,7 @@ fn to_record(need: &Need) -> Result<RecordedNeed> {
 
 /// Returns the kind of notification that a need calls for, if any, given its last record.
 fn choose_kind(need: &Need, known: Option<&RecordedNeed>) -> Result<Option<DeclaredKind>> {
-    let is_pressing = need.urgency > Urgency::Routine;
+    let is_pressing = need.urgency >= Urgency::Soon;
     let Some(known) = known else {
         return Ok(is_pressing.then_some(DUE_SOON));
     };

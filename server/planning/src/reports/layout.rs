@@ -93,10 +93,11 @@ fn put_head(paper: &mut Paper, report: &Report) {
     paper.fact(
         "Due for adjustment",
         &format!(
-            "{} overdue, {} urgent, {} soon",
+            "{} overdue, {} urgent, {} soon, {} without an adjustment on record",
             count(Urgency::Overdue),
             count(Urgency::Urgent),
-            count(Urgency::Soon)
+            count(Urgency::Soon),
+            count(Urgency::Unknown)
         ),
     );
     let unknown = report

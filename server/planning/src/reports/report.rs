@@ -64,7 +64,7 @@ pub(super) struct DueCompass {
 impl DueCompass {
     /// Returns whether the compass is due soon or overdue.
     pub(super) fn is_pressing(&self) -> bool {
-        self.urgency > Urgency::Routine
+        self.urgency >= Urgency::Soon
     }
 }
 

@@ -3,9 +3,8 @@
 
 use super::Mailer;
 use crate::db::{self, Db, rows};
-use crate::outbox::Attempt;
 use crate::time::Time;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 
 impl Mailer {
     /// Hands a letter over for each of the platform's admins. Returns their number.
@@ -22,20 +21,10 @@ impl Mailer {
         let admins = platform_admins(db).await?;
         let mut problem = Ok(());
         for (address,) in &admins {
-            let sent = self.write_to(address, subject, text, now).await;
+            let sent = self.sender().write(address, subject, &[text], "", now).await;
             problem = problem.and(sent.with_context(|| format!("no letter to {address}")));
         }
         problem.map(|()| admins.len())
-    }
-
-    async fn write_to(&self, address: &str, subject: &str, text: &str, now: Time) -> Result<()> {
-        let (envelope, message) = self.service_message(address, subject, text, now)?;
-        match self.relay().hand_over(&envelope, &message).await? {
-            Attempt::Accepted(_) => Ok(()),
-            Attempt::Refused(code, reply) | Attempt::Deferred(code, reply) => {
-                bail!("the relay replied {code}: {reply}")
-            }
-        }
     }
 }
 

@@ -16,6 +16,7 @@ mod mailing_list;
 mod recipient;
 mod relay;
 mod send;
+mod sender;
 mod store;
 
 pub use announce::{Announcement, Phase, announce};
@@ -26,6 +27,7 @@ pub use mailing_list::{
 pub use recipient::address;
 pub use relay::Relay;
 pub use send::Mailer;
+pub use sender::Sender;
 
 use crate::access::{Reader, Writer};
 use crate::app::App;

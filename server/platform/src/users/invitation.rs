@@ -1,26 +1,35 @@
 //! One-time codes with which users set their password.
 //!
-//! Invariants: a code is stored as a hash and works once, for a week. Its user sets a password
-//! and gets no other access; the sign-in follows with the password.
+//! Invariants: a code is stored as a hash and works once, for a week; an hour where someone asked
+//! for it without a session. Its user sets a password and gets no other access; the sign-in follows
+//! with the password. A letter with a code is never stored.
 
 use crate::access::AdminWriter;
 use crate::app::App;
 use crate::audit::{Actor, Refusal, RequestContext};
 use crate::db::{Db, DomainEvent, Tx, execute, row};
 use crate::error::{Error, Problem, Result};
-use crate::http::{Id, Json, Valid};
+use crate::http::{Id, Json, Valid, text};
 use crate::ids::{FirmId, OperatorId, UserId};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use crate::{oidc, password, second_factor, secret, session, tokens};
+use crate::{mail, oidc, password, second_factor, secret, session, tokens};
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
+use tracing::warn;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 const VALID_FOR_S: f64 = 7.0 * 86_400.0;
+/// Time for which a code is valid that someone asked for who need not be the user, seconds.
+const VALID_BY_MAIL_S: f64 = 3_600.0;
+/// Time after which another code may be sent to an address, seconds.
+const BETWEEN_LETTERS_S: f64 = 300.0;
+/// Time for the relay to take a letter.
+const RELAY_PATIENCE: Duration = Duration::from_secs(15);
 
 pub(super) fn router<S>() -> OpenApiRouter<S>
 where
@@ -30,6 +39,7 @@ where
     OpenApiRouter::new()
         .routes(routes!(invite_again))
         .routes(routes!(accept_invitation))
+        .routes(routes!(request_password_reset))
 }
 
 /// Invitation to set a password.
@@ -37,9 +47,9 @@ where
 #[schema(example = json!({
     "code": "7QWM-0V3N-KX2D-9RTA",
     "link": "https://binnacle.example.com/invitation#7QWM-0V3N-KX2D-9RTA",
-    "expires_at": "2026-11-28T07:00:00Z"
+    "expires_at": "2026-11-28T07:00:00Z", "mailed": true
 }))]
-pub(super) struct Invitation {
+pub struct Invitation {
     /// One-time code; never shown again.
     code: String,
     /// Link to the page that uses the code, if the server knows its public address. The part
@@ -48,6 +58,18 @@ pub(super) struct Invitation {
     link: Option<String>,
     /// Expiry time.
     expires_at: Time,
+    /// True if the server has mailed the link to the user. It has not where mail is not set up, or
+    /// the relay refused the letter.
+    mailed: bool,
+}
+
+/// Address of a user who forgot the password.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({ "email": "ada@example.com" }))]
+struct Forgotten {
+    /// E-mail address used to sign in.
+    email: String,
 }
 
 /// Code, and the password to be set with it.
@@ -109,7 +131,50 @@ async fn invite_again(
     }
     let invitation = make(&mut tx, &app, id).await?;
     tx.commit().await?;
+    let invitation = invitation.mail_to(&app, id).await?;
     Ok((StatusCode::CREATED, Json(invitation)))
+}
+
+/// Ask for a code to set a new password
+///
+/// For anyone who forgot the password: the server mails a code, valid for an hour. The response is
+/// the same whether or not the address has an account. Whoever signs in by a provider gets none.
+#[utoipa::path(post, path = "/password-resets", tag = "people", security(()),
+    request_body = Forgotten,
+    responses((status = 202, description = "A letter is sent if the address has an account"),
+              (status = 409, description = "Mail is not set up on this server", body = Problem)))]
+async fn request_password_reset(
+    State(app): State<App>,
+    request: RequestContext,
+    Valid(forgotten): Valid<Forgotten>,
+) -> Result<StatusCode> {
+    if !app.config.mail.is_set_up() {
+        let ask = "this server sends no mail: ask your administrator for a code";
+        return Err(Error::WrongState(ask.to_owned()));
+    }
+    let email = session::normal_email(&text("email", &forgotten.email)?);
+    let now: Time = app.clock.now().into();
+    let Some(user) = find_forgetful(&app.db, &email, now).await? else {
+        return Ok(StatusCode::ACCEPTED);
+    };
+    let mut tx = request.begin().await?;
+    let (code, _) = insert(&mut tx, user, now, VALID_BY_MAIL_S).await?;
+    tx.commit().await?;
+    // Not awaited: the time of the response would say who has an account.
+    tokio::spawn(async move {
+        let paragraphs = [
+            &*format!("Someone asked to set a new password for {email} at Binnacle."),
+            "Set it on the page below within an hour. If it was not you, ignore this letter: the \
+             password stays as it is.",
+        ];
+        let letter = Letter {
+            address: &email,
+            subject: "Set a new password",
+            paragraphs: &paragraphs,
+        };
+        letter.send(&app, &code).await;
+    });
+    Ok(StatusCode::ACCEPTED)
 }
 
 /// Set a password with a one-time code
@@ -170,14 +235,93 @@ async fn accept_invitation(
 /// Creates a code for a user, in place of any earlier one.
 pub(super) async fn make(tx: &mut Tx, app: &App, user: UserId) -> Result<Invitation> {
     let now = app.clock.now();
-    let (code, expires_at) = insert(tx, user, now.into()).await?;
+    let (code, expires_at) = insert(tx, user, now.into(), VALID_FOR_S).await?;
     let at = app.config.mail.public_url.as_deref();
     let link = at.map(|at| format!("{}/invitation#{code}", at.trim_end_matches('/')));
     Ok(Invitation {
         code,
         link,
         expires_at,
+        mailed: false,
     })
+}
+
+/// Letter with a code.
+struct Letter<'a> {
+    address: &'a str,
+    subject: &'a str,
+    paragraphs: &'a [&'a str],
+}
+
+impl Letter<'_> {
+    /// Sends the letter with the page that uses a code; returns whether the relay has taken it.
+    async fn send(&self, app: &App, code: &str) -> bool {
+        let sender = match mail::Sender::new(&app.config.mail) {
+            Ok(Some(sender)) => sender.with_patience(RELAY_PATIENCE),
+            Ok(None) => return false,
+            Err(error) => {
+                warn!(error = format!("{error:#}"), "mail cannot be sent");
+                return false;
+            }
+        };
+        let path = format!("/invitation#{code}");
+        let now = app.clock.now().into();
+        let sent = sender
+            .write(self.address, self.subject, self.paragraphs, &path, now)
+            .await;
+        if let Err(error) = &sent {
+            warn!(error = format!("{error:#}"), "a letter with a code was not sent");
+        }
+        sent.is_ok()
+    }
+}
+
+impl Invitation {
+    /// Mails the invitation to its user, if mail is set up.
+    pub(super) async fn mail_to(self, app: &App, user: UserId) -> Result<Invitation> {
+        let found = row!(
+            app.db,
+            (String, Option<String>),
+            "SELECT u.email, COALESCE(o.name, f.name) FROM users u
+             LEFT JOIN operators o ON o.id = u.operator_id
+             LEFT JOIN firms f ON f.id = u.firm_id
+             WHERE u.id = $1 ORDER BY u.id",
+            user
+        )?;
+        let Some((address, company)) = found else {
+            return Ok(self);
+        };
+        let company = company.map_or(String::new(), |name| format!(" as a user of {name}"));
+        let paragraphs = [
+            &*format!("You are invited to Binnacle{company}. You sign in as {address}."),
+            "Set your password on the page below within a week.",
+        ];
+        let letter = Letter {
+            address: &address,
+            subject: "Your invitation to Binnacle",
+            paragraphs: &paragraphs,
+        };
+        let mailed = letter.send(app, &self.code).await;
+        Ok(Invitation { mailed, ..self })
+    }
+}
+
+/// Finds the user of an address who may be sent a code: one who is not disabled, signs in by
+/// password, and was sent none just before.
+async fn find_forgetful(db: &Db, email: &str, now: Time) -> Result<Option<UserId>> {
+    let found = row!(
+        db,
+        (UserId,),
+        "SELECT u.id FROM users u
+         WHERE u.email = $1 AND u.disabled_at IS NULL
+           AND NOT EXISTS (SELECT 1 FROM identities n WHERE n.user_id = u.id)
+           AND NOT EXISTS (SELECT 1 FROM invitations i
+                           WHERE i.user_id = u.id AND i.created_at > $2)
+         ORDER BY u.id",
+        email,
+        Time(now.0.plus_seconds(-BETWEEN_LETTERS_S))
+    )?;
+    Ok(found.map(|(user,)| user))
 }
 
 /// Resets a user: removes password, second factor, sessions, tokens, calendar feeds and the
@@ -208,7 +352,7 @@ pub async fn reset(
     session::set_password(&mut tx, user, "").await?;
     end_access(&mut tx, user).await?;
     second_factor::remove(&mut tx, user).await?;
-    let made = insert(&mut tx, user, now).await?;
+    let made = insert(&mut tx, user, now, VALID_FOR_S).await?;
     tx.commit().await?;
     Ok(Some(made))
 }
@@ -231,9 +375,14 @@ async fn end_access(tx: &mut Tx, user: UserId) -> Result<()> {
     Ok(())
 }
 
-async fn insert(tx: &mut Tx, user: UserId, now: Time) -> Result<(String, Time)> {
+async fn insert(
+    tx: &mut Tx,
+    user: UserId,
+    now: Time,
+    valid_for_s: f64,
+) -> Result<(String, Time)> {
     let code = secret::new_code();
-    let expires_at = Time(now.0.plus_seconds(VALID_FOR_S));
+    let expires_at = Time(now.0.plus_seconds(valid_for_s));
     execute!(
         tx,
         "INSERT INTO invitations (user_id, code_hash, created_at, expires_at)

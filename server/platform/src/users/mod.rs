@@ -7,7 +7,7 @@
 mod invitation;
 mod store;
 
-pub use invitation::{AccessEnded, reset};
+pub use invitation::{AccessEnded, Invitation, reset};
 
 use crate::access::{AdminReader, AdminWriter};
 use crate::app::App;
@@ -19,10 +19,10 @@ use crate::ids::UserId;
 use crate::quotas::Quota;
 use crate::second_factor;
 use crate::session::{Role, normal_email};
+use crate::tenants::Tenant;
 use crate::time::Time;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
-use invitation::Invitation;
 use lettre::Address;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -141,6 +141,48 @@ struct InvitedUser {
     invitation: Invitation,
 }
 
+/// User of a company to be invited by who manages the company.
+#[derive(Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({ "email": "rosa@example.com", "name": "Rosa Sáez" }))]
+pub struct NewCompanyUser {
+    /// E-mail address to sign in with.
+    #[schema(max_length = 200)]
+    pub email: String,
+    /// The user's name.
+    #[schema(min_length = 1, max_length = 200)]
+    pub name: String,
+}
+
+/// Invites a user of a company, who sets a password with the invitation.
+///
+/// # Errors
+/// [`Error::WrongState`] when the e-mail address has an account, [`Error::Invalid`] for a field.
+pub async fn invite(
+    app: &App,
+    request: &RequestContext,
+    new: &NewCompanyUser,
+    tenant: Tenant,
+    role: Role,
+) -> Result<Invitation> {
+    let email = checked_email(&new.email)?;
+    let name = text("name", &new.name)?;
+    let now = app.clock.now().into();
+    let mut tx = request.begin().await?;
+    request.concerns(tenant);
+    let created = store::insert(&mut tx, tenant, &email, &name, role, now);
+    let id = created.await?.ok_or_else(|| has_account(&email))?;
+    let invitation = invitation::make(&mut tx, app, id).await?;
+    tx.commit().await?;
+    invitation.mail_to(app, id).await
+}
+
+fn has_account(email: &str) -> Error {
+    Error::WrongState(format!(
+        "{email} already has an account, with this company or another"
+    ))
+}
+
 /// Changes to a user; omitted fields stay as they are.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -181,8 +223,8 @@ async fn list_users(
 
 /// Invite a user
 ///
-/// Pass the link or the code on to the user, who sets a password with it. It works once, for a
-/// week.
+/// The server mails the link where mail is set up. Otherwise pass the link or the code on to the
+/// user, who sets a password with it. It works once, for a week.
 #[utoipa::path(post, path = "/users", tag = "people", params(Key), request_body = NewUser,
     responses((status = 201, body = InvitedUser), (status = 401, body = Problem),
               (status = 409, description = "The e-mail address already has an account", body = Problem)))]
@@ -201,16 +243,14 @@ async fn invite_user(
     key.shown_once(&mut tx, admin.operator, &request_hash, now)
         .await?;
     QUOTA.must_have_room(&mut tx, admin.operator, now).await?;
-    let created = store::insert(&mut tx, admin.operator, &email, &name, new.role.into(), now);
-    let id = created.await?.ok_or_else(|| {
-        Error::WrongState(format!(
-            "{email} already has an account, with this company or another"
-        ))
-    })?;
+    let tenant = admin.operator.into();
+    let created = store::insert(&mut tx, tenant, &email, &name, new.role.into(), now);
+    let id = created.await?.ok_or_else(|| has_account(&email))?;
     let invitation = invitation::make(&mut tx, &app, id).await?;
     let user = store::find(&mut tx, admin.operator, id).await?;
     tx.commit().await?;
     let user = user.ok_or(Error::NotFound("user"))?;
+    let invitation = invitation.mail_to(&app, id).await?;
     Ok((StatusCode::CREATED, Json(InvitedUser { user, invitation })))
 }
 
@@ -325,7 +365,10 @@ async fn change_sign_in_rules(
 }
 
 /// Returns an e-mail address as it is stored, if it is a valid address.
-fn checked_email(email: &str) -> Result<String> {
+///
+/// # Errors
+/// [`Error::Invalid`] for the field `email`.
+pub fn checked_email(email: &str) -> Result<String> {
     let email = normal_email(&text("email", email)?);
     if !email.is_ascii() || email.parse::<Address>().is_err() {
         return Err(Error::Invalid {

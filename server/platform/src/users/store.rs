@@ -65,13 +65,13 @@ pub(super) async fn find(
 /// Stores a user without a password; `None` when the e-mail address has an account.
 pub(super) async fn insert(
     tx: &mut Tx,
-    operator: OperatorId,
+    tenant: Tenant,
     email: &str,
     name: &str,
     role: Role,
     now: Time,
 ) -> db::Result<Option<UserId>> {
-    match session::create_user(tx, Some(operator.into()), email, name, role, "", now).await {
+    match session::create_user(tx, Some(tenant), email, name, role, "", now).await {
         Err(sqlx::Error::Database(error)) if error.is_unique_violation() => Ok(None),
         created => created.map(Some),
     }

@@ -1,4 +1,5 @@
-//! `admin`: creates operators, firms and users, resets users, revokes agents and rotates keys.
+//! `admin`: creates operators, firms and users, prints the code of the first run, resets users,
+//! revokes agents and rotates keys.
 
 mod sandbox;
 
@@ -58,6 +59,7 @@ fn name_of(command: &AdminCommand) -> &'static str {
             Create::PlatformAdmin { .. } => "admin create platform-admin",
         },
         AdminCommand::ResetUser { .. } => "admin reset-user",
+        AdminCommand::FirstRun => "admin first-run",
         AdminCommand::RotateSigningKey => "admin rotate-signing-key",
         AdminCommand::SealSecrets => "admin seal-secrets",
         AdminCommand::RevokeAgent { .. } => "admin revoke-agent",
@@ -68,6 +70,7 @@ async fn run(db: &Db, request: &RequestContext, command: AdminCommand, now: Time
     match command {
         AdminCommand::Create { what } => create(db, request, what, now).await,
         AdminCommand::ResetUser { email } => reset_user(request, &email, now).await,
+        AdminCommand::FirstRun => print_first_run_code(db, request, now).await,
         AdminCommand::RotateSigningKey => rotate_signing_key(request, now).await,
         AdminCommand::SealSecrets => seal_secrets(request).await,
         AdminCommand::RevokeAgent { vessel, agent } => {
@@ -111,6 +114,15 @@ async fn reset_user(request: &RequestContext, email: &str, now: Time) -> Made {
     match users::reset(request, email, now).await? {
         Some((code, expires_at)) => Ok(Ok(json!({ "code": code, "expires_at": expires_at }))),
         None => Ok(Err(format!("--email: no user has the address {email:?}"))),
+    }
+}
+
+async fn print_first_run_code(db: &Db, request: &RequestContext, now: Time) -> Made {
+    match operators::make_first_run_code(db, request, now).await? {
+        Some((code, expires_at)) => Ok(Ok(json!({ "code": code, "expires_at": expires_at }))),
+        None => Ok(Err(
+            "this server has users: ask one of them for an invitation, or reset a user".to_owned(),
+        )),
     }
 }
 

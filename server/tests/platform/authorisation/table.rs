@@ -32,6 +32,8 @@ const FIRM_WRITES: &str = "4334+3133";
 const AUDIT: &str = "+3++++1++";
 const PLATFORM_READS: &str = "3333331++";
 const PLATFORM_WRITES: &str = "3333331+3";
+/// Allowed for a platform admin, and for an operator's admin.
+const FOUNDS_FIRM: &str = "+33+331+3";
 const AGENT: &str = "111111+11";
 
 /// Method and path, as in the document, and their rule.
@@ -58,15 +60,18 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("GET /events", PARTY_READS),
     ("GET /firm-terms", FLEET_READS),
     ("GET /firms", ANYONE),
-    ("POST /firms", PLATFORM_WRITES),
+    ("POST /firms", FOUNDS_FIRM),
     ("GET /firms/{id}", ANYONE),
     ("GET /firms/{id}/keys", ANYONE),
     ("GET /firms/{id}/teams", ANYONE),
     ("POST /firms/{id}/keys", FIRM_WRITES),
+    ("POST /firms/{id}/users", PLATFORM_WRITES),
     ("DELETE /firms/{id}/keys/{key}", FIRM_WRITES),
     ("DELETE /firms/{id}/terms", FLEET_WRITES),
     ("PUT /firms/{id}/teams", FIRM_WRITES),
     ("PUT /firms/{id}/terms", FLEET_WRITES),
+    ("GET /first-run", OPEN),
+    ("POST /first-run", OPEN),
     ("GET /fleet", FLEET_READS),
     ("GET /fleet-priors", FLEET_READS),
     ("GET /healthz", OPEN),
@@ -98,9 +103,11 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("GET /operators", PLATFORM_READS),
     ("POST /operators", PLATFORM_WRITES),
     ("GET /operators/{id}", PLATFORM_READS),
+    ("POST /operators/{id}/users", PLATFORM_WRITES),
     ("DELETE /operators/{id}/firms/{firm}", PLATFORM_WRITES),
     ("PUT /operators/{id}/firms/{firm}", PLATFORM_WRITES),
     ("PUT /operators/{id}/quotas/{quota}", PLATFORM_WRITES),
+    ("POST /password-resets", OPEN),
     ("GET /port-calls", FLEET_READS),
     ("POST /port-calls.csv", FLEET_WRITES),
     ("POST /port-calls/timestamps", FLEET_WRITES),
@@ -149,6 +156,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("DELETE /users/{id}/second-factor", ADMIN_IN_PERSON),
     ("GET /vessels", FLEET_READS),
     ("POST /vessels", FLEET_WRITES),
+    ("POST /vessels.csv", FLEET_WRITES),
     ("GET /vessels/{id}", FLEET_READS),
     ("PATCH /vessels/{id}", FLEET_WRITES),
     ("GET /vessels/{id}/agents", FLEET_READS),

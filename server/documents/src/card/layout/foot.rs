@@ -122,7 +122,7 @@ fn next_due(card: &Card) -> String {
         return "no date yet: unverified berth adjustment".to_owned();
     }
     let Some(due) = &card.next_due else {
-        return "at once: no adjustment is on record".to_owned();
+        return "unknown: no adjustment is on record".to_owned();
     };
     let flags = if due.flags_own_rules {
         ""
