@@ -48,6 +48,8 @@ fn model_of(ship: &ShipMagnetism) -> Model {
         samples_rejected: 0,
         quality: None,
         reference_grade: ReferenceGrade::Heading,
+        mean_h_nt: None,
+        needles: None,
     }
 }
 

@@ -146,6 +146,8 @@ pub(crate) fn exactly(truth: &Standing, waters: &[Water]) -> Model {
         samples_rejected: 0,
         quality: None,
         reference_grade: ReferenceGrade::Heading,
+        mean_h_nt: None,
+        needles: None,
     }
 }
 

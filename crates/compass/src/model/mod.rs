@@ -1,12 +1,15 @@
 //! A vessel's fitted magnetic model, as stored and sent on board.
 
 mod json;
+mod needles;
 mod reference_grade;
 mod variation_mistake;
 
+pub use needles::NeedleInduction;
 pub use reference_grade::{Directions, ReferenceGrade};
 pub use variation_mistake::VariationMistake;
 
+use crate::ship::EarthField;
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
@@ -197,4 +200,25 @@ pub struct Model {
     pub quality: Option<Quality>,
     /// Source of the true headings behind the model.
     pub reference_grade: ReferenceGrade,
+    /// Harmonic mean of the horizontal field over the samples, nT; none where unknown.
+    pub mean_h_nt: Option<f64>,
+    /// The needles' part of D and E; none where the correctors are unknown.
+    pub needles: Option<NeedleInduction>,
+}
+
+impl Model {
+    /// Returns the seven ratios at a place: those of the model, with the needles' part of D
+    /// and E in this horizontal field.
+    pub fn parameters_at(&self, earth: EarthField) -> Parameters {
+        let parameters = &self.parameters_over_lambda;
+        self.needles
+            .map_or(*parameters, |needles| needles.adapt(parameters, earth))
+    }
+
+    /// Returns the horizontal field at which the ratios contain the needles' part, nT; none
+    /// where unknown.
+    pub fn reference_h_nt(&self) -> Option<f64> {
+        let of_needles = self.needles.map(|needles| needles.reference_h_nt);
+        of_needles.or(self.mean_h_nt)
+    }
 }
