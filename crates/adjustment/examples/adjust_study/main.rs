@@ -5,7 +5,7 @@
 //!
 //! `make study-adjust`, or
 //! `cargo run --release -p binnacle-adjustment --example adjust_study [SHIPS] [PART]`
-//! with `plans`, `changed`, `steps` or `sea` for one part alone.
+//! with `plans`, `untold`, `changed`, `steps`, `berths` or `sea` for one part alone.
 
 #[allow(dead_code)]
 #[path = "../../tests/adjusting/mod.rs"]
@@ -24,6 +24,7 @@ mod sea;
 mod tally;
 
 use adjusting::knowledge::{FLUXGATE, Instruments, PHONE};
+use adjusting::scene::{ALL_TOLD, Untold};
 use hands::{Ending, Hands, Slip};
 use sea::Sea;
 use tally::Tally;
@@ -38,6 +39,19 @@ fn main() {
             for (design, which) in [("class A", 0), ("small", 1)] {
                 let tally = Tally::from_seeds(0..ships, which, instruments);
                 println!("{name}, {design}: {tally}");
+            }
+        }
+    }
+    if wanted("untold") {
+        for (name, untold) in untold() {
+            println!("{name}: {}", Tally::untold(0..ships, 0, FLUXGATE, untold));
+        }
+    }
+    if wanted("berths") {
+        for (name, untold) in untold() {
+            for ending in [Ending::ByCompass, Ending::ReadAgain] {
+                let hands = Hands::from_seeds(0..ships, Slip::Berth(untold), ending);
+                println!("{name}, {ending:?}: {hands}");
             }
         }
     }
@@ -67,6 +81,71 @@ fn main() {
             println!("wrong by {wrong_deg}: {sea}");
         }
     }
+}
+
+/// Class A: what the planner is not told.
+fn untold() -> [(&'static str, Untold); 9] {
+    [
+        ("all told", ALL_TOLD),
+        (
+            "model from elsewhere",
+            Untold {
+                model_from_elsewhere: true,
+                ..ALL_TOLD
+            },
+        ),
+        (
+            "model from elsewhere that does not say so",
+            Untold {
+                model_from_elsewhere: true,
+                model_without_waters: true,
+                ..ALL_TOLD
+            },
+        ),
+        (
+            "wrong end in the inventory",
+            Untold {
+                wrong_end: true,
+                ..ALL_TOLD
+            },
+        ),
+        (
+            "4 microtesla of steel",
+            Untold {
+                steel_nt: 4_000.0,
+                ..ALL_TOLD
+            },
+        ),
+        (
+            "all told, second heading",
+            Untold {
+                is_shifted: true,
+                ..ALL_TOLD
+            },
+        ),
+        (
+            "4 microtesla of steel, second heading",
+            Untold {
+                steel_nt: 4_000.0,
+                is_shifted: true,
+                ..ALL_TOLD
+            },
+        ),
+        (
+            "heading 4 degrees off",
+            Untold {
+                heading_off_deg: 4.0,
+                ..ALL_TOLD
+            },
+        ),
+        (
+            "magnets 20 % weak",
+            Untold {
+                lot_share: 0.8,
+                ..ALL_TOLD
+            },
+        ),
+    ]
 }
 
 /// Class A: changes across the needle that turn the field by 5° to 10°, with a stated
