@@ -68,7 +68,7 @@ pub(super) fn make(input: CardInput) -> Result<Card, Refusal> {
     let widest_band95_deg = widest(&curve, input.limit_deg)?;
     let lines = deviation::table(ship, earth, STEP_DEG)?;
     let coefficients = CardCoefficients {
-        exact: Exact::new(&ship.parameters_over_lambda, earth)?.to_degrees(),
+        exact: Exact::new(&ship.parameters_at(earth), earth)?.to_degrees(),
         constant_deg: ship.constant_deg,
         handbook: ship.approximate_coefficients(earth)?,
     };
