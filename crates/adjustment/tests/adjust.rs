@@ -16,7 +16,7 @@ mod tally;
 
 use adjusting::knowledge::{FLUXGATE, Instruments};
 use adjusting::random::Random;
-use adjusting::scene::{ALL_TOLD, Untold};
+use adjusting::scene::{ALL_KNOWN, Hidden};
 use binnacle_adjustment::adjust::{Adjustment, Circumstances, Limits, plan};
 use binnacle_adjustment::corrector::effect;
 use hands::{Ending, Hands, Slip};
@@ -237,26 +237,26 @@ fn a_change_along_the_needle_is_refused_where_an_earlier_berth_gave_lambda() {
 /// The model was fitted in other waters than those of the plan, and the ship sails to others
 /// still: needles' induction counts in each by its own field.
 #[test]
-fn a_model_from_elsewhere_keeps_its_band_here_and_in_waters_that_nobody_told() {
-    let elsewhere = Untold {
+fn a_model_from_elsewhere_keeps_its_band_here_and_in_other_waters() {
+    let elsewhere = Hidden {
         model_from_elsewhere: true,
-        ..ALL_TOLD
+        ..ALL_KNOWN
     };
-    let tally = Tally::untold(2000..2040, 0, FLUXGATE, elsewhere);
+    let tally = Tally::hidden(2000..2040, 0, FLUXGATE, elsewhere);
     assert!(tally.planned >= 25, "{tally}");
     assert!(tally.coverage() >= 0.9, "{tally}");
-    assert!(mean(&tally.held_untold) >= 0.9, "{tally}");
+    assert!(mean(&tally.held_elsewhere) >= 0.9, "{tally}");
 }
 
 #[test]
 fn with_a_second_heading_no_steel_on_the_quay_passes_for_lambda() {
     let with = |steel_nt: f64| {
-        let untold = Untold {
+        let hidden = Hidden {
             steel_nt,
             is_shifted: true,
-            ..ALL_TOLD
+            ..ALL_KNOWN
         };
-        Tally::untold(0..25, 0, FLUXGATE, untold)
+        Tally::hidden(0..25, 0, FLUXGATE, hidden)
     };
     let steel = with(4_000.0);
     assert_eq!(steel.outside, 0, "{steel}");
@@ -266,9 +266,9 @@ fn with_a_second_heading_no_steel_on_the_quay_passes_for_lambda() {
 
 #[test]
 fn a_wrong_end_in_the_inventory_ends_in_no_signed_adjustment_outside_its_band() {
-    let wrong_end = Slip::Berth(Untold {
+    let wrong_end = Slip::Berth(Hidden {
         wrong_end: true,
-        ..ALL_TOLD
+        ..ALL_KNOWN
     });
     let hands = Hands::from_seeds(0..25, wrong_end, Ending::ReadAgain);
     assert!(hands.ships >= 20, "{hands}");

@@ -5,7 +5,7 @@
 //!
 //! `make study-adjust`, or
 //! `cargo run --release -p binnacle-adjustment --example adjust_study [SHIPS] [PART]`
-//! with `plans`, `untold`, `changed`, `steps`, `berths` or `sea` for one part alone.
+//! with `plans`, `hidden`, `changed`, `steps`, `berths` or `sea` for one part alone.
 
 #[allow(dead_code)]
 #[path = "../../tests/adjusting/mod.rs"]
@@ -24,7 +24,7 @@ mod sea;
 mod tally;
 
 use adjusting::knowledge::{FLUXGATE, Instruments, PHONE};
-use adjusting::scene::{ALL_TOLD, Untold};
+use adjusting::scene::{ALL_KNOWN, Hidden};
 use hands::{Ending, Hands, Slip};
 use sea::Sea;
 use tally::Tally;
@@ -42,15 +42,15 @@ fn main() {
             }
         }
     }
-    if wanted("untold") {
-        for (name, untold) in untold() {
-            println!("{name}: {}", Tally::untold(0..ships, 0, FLUXGATE, untold));
+    if wanted("hidden") {
+        for (name, hidden) in hidden() {
+            println!("{name}: {}", Tally::hidden(0..ships, 0, FLUXGATE, hidden));
         }
     }
     if wanted("berths") {
-        for (name, untold) in untold() {
+        for (name, hidden) in hidden() {
             for ending in [Ending::ByCompass, Ending::ReadAgain] {
-                let hands = Hands::from_seeds(0..ships, Slip::Berth(untold), ending);
+                let hands = Hands::from_seeds(0..ships, Slip::Berth(hidden), ending);
                 println!("{name}, {ending:?}: {hands}");
             }
         }
@@ -83,66 +83,66 @@ fn main() {
     }
 }
 
-/// Class A: what the planner is not told.
-fn untold() -> [(&'static str, Untold); 9] {
+/// Class A: what the planner does not know.
+fn hidden() -> [(&'static str, Hidden); 9] {
     [
-        ("all told", ALL_TOLD),
+        ("all known", ALL_KNOWN),
         (
             "model from elsewhere",
-            Untold {
+            Hidden {
                 model_from_elsewhere: true,
-                ..ALL_TOLD
+                ..ALL_KNOWN
             },
         ),
         (
             "model from elsewhere that does not say so",
-            Untold {
+            Hidden {
                 model_from_elsewhere: true,
                 model_without_waters: true,
-                ..ALL_TOLD
+                ..ALL_KNOWN
             },
         ),
         (
             "wrong end in the inventory",
-            Untold {
+            Hidden {
                 wrong_end: true,
-                ..ALL_TOLD
+                ..ALL_KNOWN
             },
         ),
         (
             "4 microtesla of steel",
-            Untold {
+            Hidden {
                 steel_nt: 4_000.0,
-                ..ALL_TOLD
+                ..ALL_KNOWN
             },
         ),
         (
-            "all told, second heading",
-            Untold {
+            "all known, second heading",
+            Hidden {
                 is_shifted: true,
-                ..ALL_TOLD
+                ..ALL_KNOWN
             },
         ),
         (
             "4 microtesla of steel, second heading",
-            Untold {
+            Hidden {
                 steel_nt: 4_000.0,
                 is_shifted: true,
-                ..ALL_TOLD
+                ..ALL_KNOWN
             },
         ),
         (
             "heading 4 degrees off",
-            Untold {
+            Hidden {
                 heading_off_deg: 4.0,
-                ..ALL_TOLD
+                ..ALL_KNOWN
             },
         ),
         (
             "magnets 20 % weak",
-            Untold {
+            Hidden {
                 lot_share: 0.8,
-                ..ALL_TOLD
+                ..ALL_KNOWN
             },
         ),
     ]

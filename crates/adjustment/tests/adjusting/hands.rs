@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)] // a study
 
 use super::adjusting::knowledge::{FLUXGATE, again};
-use super::adjusting::scene::{ALL_TOLD, Scene, Untold};
+use super::adjusting::scene::{ALL_KNOWN, Hidden, Scene};
 use super::adjusting::wrap;
 use super::tally::{mean, quantile};
 use binnacle_adjustment::adjust::{
@@ -35,8 +35,8 @@ pub(crate) enum Slip {
     WrongEnd,
     /// Magnets some holes too high.
     Hole(i32),
-    /// Something that the planner is not told of, at the berth itself.
-    Berth(Untold),
+    /// Something that the planner does not know, at the berth itself.
+    Berth(Hidden),
 }
 
 /// Verification after the steps.
@@ -143,15 +143,15 @@ impl Hands {
     }
 
     fn add(&mut self, seed: u64, slip: Slip, ending: Ending) {
-        let untold = match slip {
-            Slip::Moment(lot_share) => Untold {
+        let hidden = match slip {
+            Slip::Moment(lot_share) => Hidden {
                 lot_share,
-                ..ALL_TOLD
+                ..ALL_KNOWN
             },
-            Slip::Berth(untold) => untold,
-            _ => ALL_TOLD,
+            Slip::Berth(hidden) => hidden,
+            _ => ALL_KNOWN,
         };
-        let mut scene = Scene::with(seed, 0, FLUXGATE, untold);
+        let mut scene = Scene::with(seed, 0, FLUXGATE, hidden);
         let outcome = plan(&scene.adjustment()).unwrap();
         if outcome.plans.is_empty() {
             return;
@@ -201,6 +201,10 @@ impl Hands {
                 let standing = work.standing.clone();
                 let adjustment = work.adjustment(scene, &standing);
                 let learnt = predict_by_compass(&adjustment, &work.done).unwrap();
+                let (limits, waters) = (&adjustment.limits, adjustment.waters);
+                if learnt.limit_violation(limits, waters).is_some() {
+                    return "asked to read again";
+                }
                 self.end(scene, &learnt.after, work);
                 Next::Ended("done")
             };

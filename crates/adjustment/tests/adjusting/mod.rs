@@ -63,7 +63,7 @@ impl Truth {
 }
 
 impl Standing {
-    /// The same ship beside steel that adds this field in ship axes, nT.
+    /// Adds steel beside the ship, of this field in ship axes, nT.
     pub(crate) fn beside(mut self, steel_nt: [f64; 2]) -> Standing {
         self.b_nt[0] += steel_nt[0];
         self.b_nt[1] += steel_nt[1];

@@ -17,12 +17,12 @@ use binnacle_compass::time::Timestamp;
 /// degrees.
 const CARD_SD_DEG: f64 = 0.4;
 
-/// What nobody told the planner, and whether a second heading was read.
+/// Facts that the planner does not know, and whether a second heading was read.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Untold {
+pub(crate) struct Hidden {
     /// Share of their stated moment that all magnets have.
     pub(crate) lot_share: f64,
-    /// The model was fitted in other waters than those told.
+    /// The model was fitted in other waters than the plan's.
     pub(crate) model_from_elsewhere: bool,
     /// The model does not say in which waters it was fitted.
     pub(crate) model_without_waters: bool,
@@ -36,8 +36,8 @@ pub(crate) struct Untold {
     pub(crate) is_shifted: bool,
 }
 
-/// Nothing is untold.
-pub(crate) const ALL_TOLD: Untold = Untold {
+/// Nothing is hidden from the planner.
+pub(crate) const ALL_KNOWN: Hidden = Hidden {
     lot_share: 1.0,
     model_from_elsewhere: false,
     model_without_waters: false,
@@ -75,45 +75,45 @@ pub(crate) struct Scene {
 impl Scene {
     /// Makes a ship with a binnacle of one of the shipped designs.
     pub(crate) fn new(seed: u64, which: usize, instruments: Instruments) -> Scene {
-        Scene::with(seed, which, instruments, ALL_TOLD)
+        Scene::with(seed, which, instruments, ALL_KNOWN)
     }
 
     /// Makes a ship of which the planner does not know everything.
-    pub(crate) fn with(seed: u64, which: usize, instruments: Instruments, untold: Untold) -> Scene {
+    pub(crate) fn with(seed: u64, which: usize, instruments: Instruments, hidden: Hidden) -> Scene {
         let mut rng = Random::new(seed);
         // A separate generator keeps everything else unchanged.
-        let mut untold_rng = Random::new(seed ^ 0x5eed);
+        let mut hidden_rng = Random::new(seed ^ 0x5eed);
         let binnacle = super::binnacle(&mut rng, which);
         let mut truth = super::ship(&mut rng, &binnacle);
-        truth.fitted.lot_share = untold.lot_share;
+        truth.fitted.lot_share = hidden.lot_share;
         // Small binnacles, without a Flinders bar, stay in one sea.
         let waters = waters(&mut rng, if which == 0 { 1.0 } else { 0.15 });
         let standing = truth.with(&binnacle.setting);
         let reference_deg = REFERENCE_SD_DEG * rng.gaussian();
-        let fitted_in = if untold.model_from_elsewhere {
-            super::knowledge::waters(&mut untold_rng, if which == 0 { 1.0 } else { 0.15 })
+        let fitted_in = if hidden.model_from_elsewhere {
+            super::knowledge::waters(&mut hidden_rng, if which == 0 { 1.0 } else { 0.15 })
         } else {
             waters.clone()
         };
         let mut model = model_by(&mut rng, &standing, &fitted_in, reference_deg);
-        if untold.model_without_waters {
+        if hidden.model_without_waters {
             model.mean_h_nt = None;
         }
-        let (sin, cos) = untold_rng.between(0.0, std::f64::consts::TAU).sin_cos();
-        let steel_nt = [cos, sin].map(|part| untold.steel_nt * part);
+        let (sin, cos) = hidden_rng.between(0.0, std::f64::consts::TAU).sin_cos();
+        let steel_nt = [cos, sin].map(|part| hidden.steel_nt * part);
         let standing = standing.beside(steel_nt);
         let place = (waters[0].h_nt, waters[0].z_nt);
         let berthed = reading(&mut rng, &standing, place, instruments);
-        let shifted = untold.is_shifted.then(|| {
-            let heading = berthed.magnetic_deg + untold_rng.between(80.0, 280.0);
+        let shifted = hidden.is_shifted.then(|| {
+            let heading = berthed.magnetic_deg + hidden_rng.between(80.0, 280.0);
             let quay_nt = turned(steel_nt, heading - berthed.magnetic_deg);
             let there = truth.with(&binnacle.setting).beside(quay_nt);
-            reading_on(&mut untold_rng, &there, place, heading, instruments).reading
+            reading_on(&mut hidden_rng, &there, place, heading, instruments).reading
         });
-        let side = if untold_rng.unit() < 0.5 { -1.0 } else { 1.0 };
-        let berthed = berthed.misheaded(side * untold.heading_off_deg, instruments);
-        let (binnacle, misrecorded) = if untold.wrong_end {
-            misrecord(&mut untold_rng, binnacle)
+        let side = if hidden_rng.unit() < 0.5 { -1.0 } else { 1.0 };
+        let berthed = berthed.misheaded(side * hidden.heading_off_deg, instruments);
+        let (binnacle, misrecorded) = if hidden.wrong_end {
+            misrecord(&mut hidden_rng, binnacle)
         } else {
             (binnacle, None)
         };

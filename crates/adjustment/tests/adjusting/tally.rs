@@ -4,7 +4,7 @@
 
 use super::adjusting::knowledge::Instruments;
 use super::adjusting::random::Random;
-use super::adjusting::scene::{Scene, Untold};
+use super::adjusting::scene::{Hidden, Scene};
 use super::adjusting::{Standing, wrap};
 use binnacle_adjustment::adjust::plan;
 use binnacle_compass::angle::CompassHeading;
@@ -26,13 +26,13 @@ pub(crate) struct Tally {
     pub(crate) half_width_deg: Vec<f64>,
     /// Worst true residual of each plan, degrees.
     pub(crate) worst_deg: Vec<f64>,
-    /// Coverage in waters that were not told, and the error there, root mean square, degrees.
-    pub(crate) held_untold: Vec<f64>,
-    pub(crate) off_untold_deg: Vec<f64>,
-    /// The same where the model after forgets the needles.
-    pub(crate) held_untold_without_needles: Vec<f64>,
-    pub(crate) off_untold_without_needles_deg: Vec<f64>,
-    /// Plans whose worst true residual anywhere told exceeds the stated one with its band.
+    /// Coverage in other waters than the plan's, and the error there, root mean square, degrees.
+    pub(crate) held_elsewhere: Vec<f64>,
+    pub(crate) off_elsewhere_deg: Vec<f64>,
+    /// Both of the model after without the needles' part.
+    pub(crate) held_elsewhere_without_needles: Vec<f64>,
+    pub(crate) off_elsewhere_without_needles_deg: Vec<f64>,
+    /// Plans whose worst true residual in any of its waters exceeds the stated one with its band.
     pub(crate) outside: u64,
     pub(crate) before_deg: Vec<f64>,
     /// Heeling error at the berth before, after, and predicted less true, degrees per
@@ -59,15 +59,15 @@ impl Tally {
     }
 
     /// Ships of which the planner does not know everything.
-    pub(crate) fn untold(
+    pub(crate) fn hidden(
         seeds: std::ops::Range<u64>,
         which: usize,
         instruments: Instruments,
-        untold: Untold,
+        hidden: Hidden,
     ) -> Tally {
         let mut tally = Tally::default();
         for seed in seeds {
-            tally.add(&Scene::with(seed, which, instruments, untold));
+            tally.add(&Scene::with(seed, which, instruments, hidden));
         }
         tally
     }
@@ -139,12 +139,12 @@ impl Tally {
             needles: None,
             ..best.model_after.clone()
         };
-        let (held, off_deg) = in_untold_waters(scene, &adjusted, &best.model_after);
-        self.held_untold.push(held);
-        self.off_untold_deg.push(off_deg);
-        let (held, off_deg) = in_untold_waters(scene, &adjusted, &forgetful);
-        self.held_untold_without_needles.push(held);
-        self.off_untold_without_needles_deg.push(off_deg);
+        let (held, off_deg) = in_other_waters(scene, &adjusted, &best.model_after);
+        self.held_elsewhere.push(held);
+        self.off_elsewhere_deg.push(off_deg);
+        let (held, off_deg) = in_other_waters(scene, &adjusted, &forgetful);
+        self.held_elsewhere_without_needles.push(held);
+        self.off_elsewhere_without_needles_deg.push(off_deg);
         let after = adjusted.heeling_error(berth);
         let predicted = best.heeling.after_deg_per_deg.unwrap();
         let before = scene.standing.heeling_error(berth);
@@ -172,15 +172,15 @@ impl Tally {
     }
 }
 
-/// Number of untold waters for each ship.
-const UNTOLD_WATERS: usize = 4;
+/// Number of other waters for each ship.
+const OTHER_WATERS: usize = 4;
 
-/// Compares a model with the truth in other waters than those told: coverage of the band, and
+/// Compares a model with the truth in other waters than the plan's: coverage of the band, and
 /// root mean square of the error, degrees.
-fn in_untold_waters(scene: &Scene, adjusted: &Standing, model: &Model) -> (f64, f64) {
+fn in_other_waters(scene: &Scene, adjusted: &Standing, model: &Model) -> (f64, f64) {
     let mut rng = Random::new(scene.seed ^ 0xfa7);
     let (mut held, mut squares, mut headings) = (0_u32, 0.0, 0_u32);
-    for _ in 0..UNTOLD_WATERS {
+    for _ in 0..OTHER_WATERS {
         let earth = EarthField {
             h_nt: rng.between(15_000.0, 39_000.0),
             z_nt: rng.between(-30_000.0, 50_000.0),
@@ -224,7 +224,7 @@ impl fmt::Display for Tally {
         write!(
             f,
             "{} ships, {} planned, refused {:?}; worst beyond the stated {}; band held {:.1} % \
-             (standard error {:.1}), mean half-width {:.2}; in untold waters {:.1} %, off {:.2} \
+             (standard error {:.1}), mean half-width {:.2}; in other waters {:.1} %, off {:.2} \
              (without needles {:.1} %, off {:.2}); worst true residual median / 95 % {} (before {}), within 3 degrees \
              {:.1} %; heeling error median / 95 % {} (before {}), off the prediction {}; \
              moves {}; nodes {}; not proven {}",
@@ -235,10 +235,10 @@ impl fmt::Display for Tally {
             100.0 * self.coverage(),
             100.0 * self.coverage_sd(),
             mean(&self.half_width_deg),
-            100.0 * mean(&self.held_untold),
-            mean(&self.off_untold_deg),
-            100.0 * mean(&self.held_untold_without_needles),
-            mean(&self.off_untold_without_needles_deg),
+            100.0 * mean(&self.held_elsewhere),
+            mean(&self.off_elsewhere_deg),
+            100.0 * mean(&self.held_elsewhere_without_needles),
+            mean(&self.off_elsewhere_without_needles_deg),
             two(&self.worst_deg),
             two(&self.before_deg),
             100.0 * self.within_3_deg(),

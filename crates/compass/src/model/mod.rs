@@ -9,7 +9,6 @@ pub use needles::NeedleInduction;
 pub use reference_grade::{Directions, ReferenceGrade};
 pub use variation_mistake::VariationMistake;
 
-use crate::ship::EarthField;
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
@@ -207,14 +206,6 @@ pub struct Model {
 }
 
 impl Model {
-    /// Returns the seven ratios at a place: those of the model, with the needles' part of D
-    /// and E in this horizontal field.
-    pub fn parameters_at(&self, earth: EarthField) -> Parameters {
-        let parameters = &self.parameters_over_lambda;
-        self.needles
-            .map_or(*parameters, |needles| needles.adapt(parameters, earth))
-    }
-
     /// Returns the horizontal field at which the ratios contain the needles' part, nT; none
     /// where unknown.
     pub fn reference_h_nt(&self) -> Option<f64> {
