@@ -12,7 +12,7 @@ token of the firm's (scope `write`) come from the environment:
     python3 firm_client.py messages ORDER
     python3 firm_client.py events
     python3 firm_client.py on-board ORDER
-    python3 firm_client.py adjust ORDER --reading reading.json
+    python3 firm_client.py adjust ORDER --as-found found.json --reading reading.json
     python3 firm_client.py adjust ORDER
     python3 firm_client.py complete ORDER --adjuster "M. Etxeberria" --licence ES-CA-114
     python3 firm_client.py register-key --key firm.pem --name "Office, 2026"
@@ -130,8 +130,8 @@ def problem_of(error):
         return {"detail": "status %d" % error.code}
 
 
-def adjust(api, order_id, reading, read_compass):
-    """Reads the berth, takes the recommended plan, and does its steps.
+def adjust(api, order_id, found, reading, read_compass):
+    """Reports how it was found, reads the berth, takes the recommended plan, does its steps.
 
     Without a reading it goes on where the order stands.
     """
@@ -141,12 +141,21 @@ def adjust(api, order_id, reading, read_compass):
     model = api.get(path + "/model")
     binnacle = api.get(path + "/binnacle")
     print("model version %d, binnacle revision %d" % (model["version"], binnacle["revision"]))
+    if found is not None:
+        api.post(path + "/as-found", found)
     order = api.post(path + "/berth-reading", reading)
     offer = api.get(path + "/plan")
     print("%d plans, the recommended one first" % len(offer["plans"]))
     order = api.post(path + "/plan", {"plan": 1})
     is_known = reading.get("compass_deg") is not None
     return do_steps(api, path, order, read_compass, is_known)
+
+
+def json_file(name):
+    if name is None:
+        return None
+    with open(name, encoding="utf-8") as file:
+        return json.load(file)
 
 
 def do_steps(api, path, order, read_compass, is_known):
@@ -290,6 +299,9 @@ def arguments():
         if name == "say":
             command.add_argument("--text", required=True)
         if name == "adjust":
+            command.add_argument(
+                "--as-found", help="a JSON file: every corrector's setting, and the checks alongside"
+            )
             command.add_argument("--reading", help="a JSON file; without it, go on with the steps")
             command.add_argument("--as-foretold", action="store_true")
         if name == "sign":
@@ -350,12 +362,9 @@ def run(asked):
     elif asked.command == "on-board":
         show(api.post(path + "/on-board", {}))
     elif asked.command == "adjust":
-        reading = None
-        if asked.reading:
-            with open(asked.reading, encoding="utf-8") as file:
-                reading = json.load(file)
+        found, reading = [json_file(name) for name in (asked.as_found, asked.reading)]
         read_compass = as_foretold if asked.as_foretold else ask_for_compass
-        show(adjust(api, asked.order, reading, read_compass))
+        show(adjust(api, asked.order, found, reading, read_compass))
     elif asked.command == "complete":
         word = {
             "adjuster_name": asked.adjuster,

@@ -261,6 +261,8 @@ pub(crate) mod tests {
                 samples_rejected: 0,
                 quality: None,
                 reference_grade: ReferenceGrade::Heading,
+                mean_h_nt: None,
+                needles: None,
             },
         }
     }

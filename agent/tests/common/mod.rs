@@ -39,6 +39,8 @@ pub(crate) fn model() -> ModelDownlink {
             samples_rejected: 0,
             quality: None,
             reference_grade: ReferenceGrade::Heading,
+            mean_h_nt: None,
+            needles: None,
         },
     }
 }

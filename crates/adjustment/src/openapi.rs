@@ -6,7 +6,7 @@ use binnacle_compass::openapi::{allow_unknown_properties, remove_defaults, schem
 use utoipa::openapi::OpenApi;
 
 /// Names of the written forms that refuse unknown fields.
-const STRICT_FORMS: [&str; 20] = [
+const STRICT_FORMS: [&str; 21] = [
     "Binnacle",
     "BinnacleDesign",
     "MagnetKind",
@@ -26,6 +26,7 @@ const STRICT_FORMS: [&str; 20] = [
     "HeelingSetting",
     "BerthReading",
     "SecondReading",
+    "ShiftedReading",
     "PlanLimits",
 ];
 

@@ -6,15 +6,21 @@
 #[allow(dead_code)]
 mod adjusting;
 
+#[path = "adjusting/hands.rs"]
+#[allow(dead_code)]
+mod hands;
+
 #[path = "adjusting/tally.rs"]
 #[allow(dead_code)]
 mod tally;
 
 use adjusting::knowledge::{FLUXGATE, Instruments};
 use adjusting::random::Random;
+use adjusting::scene::{ALL_KNOWN, Hidden};
 use binnacle_adjustment::adjust::{Adjustment, Circumstances, Limits, plan};
 use binnacle_adjustment::corrector::effect;
-use tally::Tally;
+use hands::{Ending, Hands, Slip};
+use tally::{Tally, mean};
 
 /// Without errors, the formulas and the independent iron agree.
 #[test]
@@ -226,4 +232,45 @@ fn a_change_along_the_needle_is_refused_where_an_earlier_berth_gave_lambda() {
     assert_eq!(changed.planned, 0, "{changed}");
     let honest = Tally::changed(0..8, [0.0..0.0, 0.0..0.0], FLUXGATE, FLUXGATE, Some(0.012));
     assert!(honest.planned >= 7, "{honest}");
+}
+
+/// The model was fitted in other waters than those of the plan, and the ship sails to others
+/// still: needles' induction counts in each by its own field.
+#[test]
+fn a_model_from_elsewhere_keeps_its_band_here_and_in_other_waters() {
+    let elsewhere = Hidden {
+        model_from_elsewhere: true,
+        ..ALL_KNOWN
+    };
+    let tally = Tally::hidden(2000..2040, 0, FLUXGATE, elsewhere);
+    assert!(tally.planned >= 25, "{tally}");
+    assert!(tally.coverage() >= 0.9, "{tally}");
+    assert!(mean(&tally.held_elsewhere) >= 0.9, "{tally}");
+}
+
+#[test]
+fn with_a_second_heading_no_steel_on_the_quay_passes_for_lambda() {
+    let with = |steel_nt: f64| {
+        let hidden = Hidden {
+            steel_nt,
+            is_shifted: true,
+            ..ALL_KNOWN
+        };
+        Tally::hidden(0..25, 0, FLUXGATE, hidden)
+    };
+    let steel = with(4_000.0);
+    assert_eq!(steel.outside, 0, "{steel}");
+    let clean = with(0.0);
+    assert!(clean.planned >= 20, "{clean}");
+}
+
+#[test]
+fn a_wrong_end_in_the_inventory_ends_in_no_signed_adjustment_outside_its_band() {
+    let wrong_end = Slip::Berth(Hidden {
+        wrong_end: true,
+        ..ALL_KNOWN
+    });
+    let hands = Hands::from_seeds(0..25, wrong_end, Ending::ReadAgain);
+    assert!(hands.ships >= 20, "{hands}");
+    assert!(hands.outside <= 1, "{hands}");
 }

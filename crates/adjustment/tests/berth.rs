@@ -30,6 +30,8 @@ fn model(array: [f64; 7], constant_deg: f64, covariance: Option<&Covariance>) ->
         samples_rejected: 0,
         quality: None,
         reference_grade: ReferenceGrade::Heading,
+        mean_h_nt: None,
+        needles: None,
     }
 }
 

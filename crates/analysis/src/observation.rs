@@ -40,3 +40,15 @@ pub struct Observation {
     /// Weight beside the other rows; 1 where none is given.
     pub weight: f64,
 }
+
+/// Returns the harmonic mean of the horizontal field over observations, nT: the field at which
+/// a fit contains a part of D that grows as 1/H. None without weight.
+pub fn mean_h_nt(observations: &[Observation]) -> Option<f64> {
+    let (weights, inverse) = observations
+        .iter()
+        .fold((0.0, 0.0), |(weights, inverse), o| {
+            (weights + o.weight, inverse + o.weight / o.h_nt)
+        });
+    let mean = weights / inverse;
+    mean.is_finite().then_some(mean)
+}

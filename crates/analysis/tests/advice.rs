@@ -73,6 +73,8 @@ fn known_ship(rng: &mut ChaCha8Rng, rows: u32, earth: EarthField) -> Model {
         samples_rejected: 0,
         quality: None,
         reference_grade: ReferenceGrade::Heading,
+        mean_h_nt: None,
+        needles: None,
     }
 }
 

@@ -87,7 +87,15 @@ impl Job {
         let made = made.good();
         assert_eq!(made["has_binnacle"], true);
         made["id"].as_str().unwrap().clone_into(&mut job.order);
+        job.confirm_as_found().await;
         job
+    }
+
+    /// Reports the correctors as they are recorded, with a sound compass.
+    pub async fn confirm_as_found(&self) {
+        let recorded = self.person.get(&self.path("/binnacle")).await.good();
+        let found = as_found(&recorded["binnacle"]["setting"]);
+        self.post("/as-found", &found).await.good();
     }
 
     /// Returns the body of a new order.
@@ -214,6 +222,7 @@ impl Job {
         order["limits"] = limits;
         let made = self.person.post("/work-orders", &order).await.good();
         made["id"].as_str().unwrap().clone_into(&mut self.order);
+        self.confirm_as_found().await;
     }
 
     /// Posts something that is refused, and returns the code of the first refusal.
@@ -245,6 +254,18 @@ impl Job {
         let reason = json!({ "reason": "another ship" });
         self.person.post(path, &reason).await.good();
     }
+}
+
+/// Returns a report of correctors found in this setting, with a sound compass.
+pub fn as_found(setting: &Value) -> Value {
+    let spheres = setting["quadrantal"].is_object();
+    json!({
+        "setting": setting,
+        "dockside": {
+            "bubble": "sound", "pivot": "sound", "gimbals": "sound", "lubber_line": "sound",
+            "spheres_turned_deg": if spheres { json!(0.5) } else { json!(null) },
+        },
+    })
 }
 
 /// Returns the model that a completed order predicts.

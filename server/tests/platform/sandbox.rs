@@ -28,6 +28,7 @@ async fn a_firm_can_practise_a_whole_job_in_a_sandbox(server: TestServer) {
     };
     post("/accept", json!({})).await;
     post("/on-board", json!({})).await;
+    post("/as-found", made.as_found.clone()).await;
     post("/berth-reading", made.berth_reading.clone()).await;
     let mut order = post("/plan", json!({})).await;
     assert!(

@@ -200,6 +200,22 @@ export const adjusting = {
       // The page is kept by the browser from now on.
       await page.evaluate(() => navigator.serviceWorker.ready.then(() => undefined));
       await page.goto(`/work-orders/${id}`);
+
+      // Each corrector is looked at before anything is planned.
+      await page.getByRole('heading', { name: 'How it was found' }).waitFor();
+      const confirm = page.getByRole('button', { name: 'This is how it was found' });
+      await confirm.waitFor();
+      const lines = await page.getByTestId('seen').all();
+      if (lines.length > 0) {
+        await confirm.click();
+        await page.getByText('Tick each corrector that you have looked at').waitFor();
+      }
+      for (const line of lines) await line.check();
+      const turned = page.getByLabel(/^Turn each Kelvin sphere/);
+      if ((await turned.count()) > 0) await turned.fill('0.5');
+      await fitsItsWidth(page);
+      await shoot('berth-found-phone', { fullPage: true });
+      await confirm.click();
       await page.getByRole('heading', { name: 'Read the field' }).waitFor();
 
       // In gauss what is microtesla: refused, with what it could be.

@@ -148,6 +148,14 @@ export function sendWrite({ order, key, content }: Write): Promise<WorkOrder> {
           signal,
         }),
       );
+    case 'as_found':
+      return answer(
+        client.POST('/api/v1/work-orders/{id}/as-found', {
+          params,
+          body: content.body,
+          signal,
+        }),
+      );
     case 'reading':
       return answer(
         client.POST('/api/v1/work-orders/{id}/berth-reading', {

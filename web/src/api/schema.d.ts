@@ -2654,6 +2654,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/work-orders/{id}/as-found": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Report the correctors as found
+         * @description Comes before the first plan, and before anything is moved: the setting of every corrector, and
+         *     the checks alongside. Where a setting differs from the recorded one, `difference` says why; the
+         *     binnacle's next revision has the setting as found.
+         */
+        post: operations["report_as_found"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/work-orders/{id}/berth-reading": {
         parameters: {
             query?: never;
@@ -2707,7 +2729,8 @@ export interface paths {
         /**
          * Cancel a work order
          * @description For the operator; a firm declines instead. Correctors that were moved keep their settings: the
-         *     next revision of the binnacle and an entry in the logbook record them.
+         *     next revision of the binnacle and an entry in the logbook record them, and a predicted model
+         *     lets the vessel be planned again.
          */
         post: operations["cancel_work_order"];
         delete?: never;
@@ -3977,6 +4000,24 @@ export interface components {
          * @enum {string}
          */
         AlertState: "raised" | "acknowledged" | "cleared";
+        /** @description Correctors and compass as found. */
+        AsFound: {
+            difference?: components["schemas"]["AsFoundDifference"] | null;
+            /** @description Checks of the compass alongside. */
+            dockside: components["schemas"]["DocksideChecks"];
+            /** @description Photographs of the order that show the correctors. */
+            photos?: components["schemas"]["PhotoId"][];
+            /**
+             * @description Setting of every corrector as it stands: place, red end, pieces. One that is not named
+             *     is not fitted.
+             */
+            setting: components["schemas"]["CorrectorSetting"];
+        };
+        /**
+         * @description Reason for a setting other than recorded.
+         * @enum {string}
+         */
+        AsFoundDifference: "record_wrong" | "moved_since";
         /** @description Action that was done or tried. */
         AuditLine: {
             /** @description E-mail address that was tried, of a refused sign-in. */
@@ -4386,6 +4427,7 @@ export interface components {
              * @description Relative standard deviation of the magnetometer's scale; by default that of the kind.
              */
             scale_sd?: number | null;
+            shifted?: components["schemas"]["ShiftedReading"] | null;
             /**
              * Format: double
              * @description Horizontal field there, starboard positive.
@@ -5855,6 +5897,37 @@ export interface components {
             on: components["schemas"]["Weekday"];
         };
         /**
+         * @description Checks of the compass alongside (NGA, Handbook of Magnetic Compass Adjustment, art. 101).
+         * @example {
+         *       "bubble": "sound",
+         *       "gimbals": "sound",
+         *       "lubber_line": "sound",
+         *       "pivot": "sound",
+         *       "spheres_turned_deg": 0.5
+         *     }
+         */
+        DocksideChecks: {
+            /** @description No bubble in the bowl. */
+            bubble: components["schemas"]["DocksideResult"];
+            /** @description Gimbals: the bowl swings freely and hangs level. */
+            gimbals: components["schemas"]["DocksideResult"];
+            /** @description Lubber line: in the fore-and-aft plane. */
+            lubber_line: components["schemas"]["DocksideResult"];
+            /** @description Pivot and card: deflected by a magnet, the card returns to where it was. */
+            pivot: components["schemas"]["DocksideResult"];
+            /**
+             * Format: double
+             * @description Largest change of the compass while each Kelvin sphere is turned in its place, degrees:
+             *     their residual magnetism. `null` without spheres.
+             */
+            spheres_turned_deg: number | null;
+        };
+        /**
+         * @description Result of a check alongside.
+         * @enum {string}
+         */
+        DocksideResult: "sound" | "defective";
+        /**
          * @description Acknowledgement, and everything that the agent lacks: the response to `PUT
          *     /api/v1/streams/{stream}/batches/{seq}` and to `GET
          *     /api/v1/streams/{stream}/downlink`.
@@ -7074,6 +7147,12 @@ export interface components {
             /** @description Covariance, 8 × 8: the parameters in their order, the constant last. */
             covariance: number[][] | null;
             identifiable: components["schemas"]["Identifiable"] | null;
+            /**
+             * Format: double
+             * @description Harmonic mean of the horizontal field over the samples, nT; absent where unknown.
+             */
+            mean_h_nt?: number | null;
+            needles?: components["schemas"]["NeedleInduction"] | null;
             /** @description Poisson's parameters over the shielding factor λ. */
             parameters_over_lambda: components["schemas"]["ParametersOverLambda"];
             quality?: components["schemas"]["Quality"] | null;
@@ -7244,6 +7323,34 @@ export interface components {
             compass_deg: number[];
             /** @description Number of headings. */
             count: number;
+        };
+        /**
+         * @description Part of D and E that the compass's needles induce in its quadrantal correctors. The
+         *     needles' field is the same everywhere, so this part grows as 1/H (docs/science.md,
+         *     eq. 18), while the rest of D and E is the same in all waters.
+         */
+        NeedleInduction: {
+            /**
+             * Format: double
+             * @description The needles' part of D times H, nT: (N11 − N22)/2λ.
+             */
+            d_nt: number;
+            /**
+             * Format: double
+             * @description The needles' part of E times H, nT: N12/λ.
+             */
+            e_nt: number;
+            /**
+             * Format: double
+             * @description Horizontal field at which the model's parameters contain this part, nT: the harmonic
+             *     mean over the samples.
+             */
+            reference_h_nt: number;
+            /**
+             * Format: double
+             * @description Relative standard deviation of both parts.
+             */
+            relative_sd: number;
         };
         /**
          * @description A token that is not valid yet: the response to `POST /api/v1/agents/token`,
@@ -8119,7 +8226,8 @@ export interface components {
             band_deg?: number;
             /**
              * Format: double
-             * @description Greatest relative standard error of λ for moving soft iron; 0.03 by default.
+             * @description Relative standard error of λ above which the magnetometer is named as too poor where
+             *     spheres would have to move; 0.03 by default.
              */
             lambda_sd?: number;
             /**
@@ -8150,13 +8258,14 @@ export interface components {
             plans: components["schemas"]["CorrectorPlan"][];
             /** @description Reasons for the absence of a plan; empty when there is one. */
             refusals: Record<string, never>[];
+            second_heading?: components["schemas"]["SecondHeading"] | null;
         };
         /** @description Optimality of the search. */
         PlanOptimality: {
             /**
              * Format: double
-             * @description Greatest possible improvement over the best plan's worst residual, weighted over the
-             *     waters, degrees.
+             * @description Greatest possible improvement over the best plan's worst residual with its band,
+             *     weighted over the waters, degrees.
              */
             gap_deg: number;
             /**
@@ -9985,6 +10094,17 @@ export interface components {
             /** @description The secret as a URI, to be shown as a QR code or opened on the phone. */
             uri: string;
         };
+        /** @description Advice to shift the vessel to another heading and read the field there too. */
+        SecondHeading: {
+            /**
+             * Format: double
+             * @description Error of the plan that 4 µT of unnoticed steel along the needle would leave, and a
+             *     second heading would prevent, on the worst heading at the berth, degrees.
+             */
+            gain_deg: number;
+            /** @description Suitable magnetic headings, degrees: across the present one, and opposite to it. */
+            magnetic_deg: number[];
+        };
         /**
          * @description Second reading with the same magnetometer in the same place and alignment, after the
          *     steps.
@@ -10133,6 +10253,25 @@ export interface components {
          * @enum {string}
          */
         Severity: "notice" | "warning" | "critical";
+        /** @description Reading on another heading of the berth by the same magnetometer in the same unit. */
+        ShiftedReading: {
+            /**
+             * Format: double
+             * @description Horizontal field at the card's centre, bowl out, forward positive.
+             */
+            forward: number;
+            /**
+             * Format: double
+             * @description True heading of the vessel from the same source, degrees; at least 30 degrees from
+             *     the first.
+             */
+            heading_true_deg: number;
+            /**
+             * Format: double
+             * @description Horizontal field there, starboard positive.
+             */
+            starboard: number;
+        };
         /**
          * @description Credentials of a user.
          * @example {
@@ -10265,7 +10404,7 @@ export interface components {
          * @description Verdict of a step.
          * @enum {string}
          */
-        StepVerdict: "confirmed" | "not_seen" | "wrong_end" | "other_strength" | "unexplained";
+        StepVerdict: "confirmed" | "not_seen" | "wrong_end" | "found_otherwise" | "other_strength" | "unexplained";
         /** @description Message of the test button. */
         TestMessage: {
             /** @description Time of the event. */
@@ -10659,6 +10798,7 @@ export interface components {
         };
         /** @description Order with everything that the next action depends on. */
         WorkOrder: components["schemas"]["WorkOrderSummary"] & {
+            as_found: components["schemas"]["AsFound"] | null;
             berth_check: components["schemas"]["BerthCheck"] | null;
             call_change: components["schemas"]["WorkOrderCallChange"] | null;
             /**
@@ -27625,6 +27765,143 @@ export interface operations {
             };
         };
     };
+    report_as_found: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Key of the request; the same request with the same key creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AsFound"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also after correctors were moved */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when it differs from the record without a reason */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     read_berth: {
         parameters: {
             query?: never;
@@ -29535,7 +29812,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description There is no reading to plan from */
+            /** @description There is no reading to plan from, or the correctors are not confirmed as found */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -29645,7 +29922,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description There is no reading to plan from */
+            /** @description There is no reading to plan from, or the correctors are not confirmed as found */
             409: {
                 headers: {
                     [name: string]: unknown;

@@ -34,6 +34,7 @@ export type Completion = Schemas['Completion'];
 export type CorrectorPlace = Schemas['CorrectorPlace'];
 export type CorrectorPlan = Schemas['CorrectorPlan'];
 export type CorrectorSetting = Schemas['CorrectorSetting'];
+export type AsFound = Schemas['AsFound'];
 export type CorrectorSettings = Schemas['CorrectorSettings'];
 export type Coverage = Schemas['Coverage'];
 export type DeviationCard = Schemas['DeviationCard'];

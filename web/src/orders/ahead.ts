@@ -18,7 +18,15 @@ export interface Ahead {
   /** What the compass read last. */
   compassDeg: number | null;
   /** What the server has to answer before anything else can be done. */
-  waitingFor: 'reading' | 'plan' | 'step' | 'settings' | 'second_reading' | 'completion' | null;
+  waitingFor:
+    | 'as_found'
+    | 'reading'
+    | 'plan'
+    | 'step'
+    | 'settings'
+    | 'second_reading'
+    | 'completion'
+    | null;
 }
 
 /** An angle in (−180°, 180°]. */
@@ -88,6 +96,7 @@ function after(now: Ahead, { content }: Write, offer?: PlanOffer): Ahead {
         compassDeg: content.body.after_deg,
       };
     }
+    case 'as_found':
     case 'reading':
     case 'settings':
     case 'second_reading':

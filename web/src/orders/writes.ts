@@ -8,6 +8,7 @@
 
 import type {
   AdjustmentRefusal,
+  AsFound,
   BerthReading,
   Completion,
   CorrectorSettings,
@@ -18,6 +19,7 @@ import type {
 /** What is written. */
 export type Content =
   | { kind: 'on_board'; at: string }
+  | { kind: 'as_found'; body: AsFound }
   | { kind: 'reading'; body: BerthReading }
   | { kind: 'plan'; plan: number }
   | { kind: 'step'; number: number; body: { before_deg?: number; after_deg: number } }
@@ -53,7 +55,14 @@ export interface Write {
 
 /** What follows from a plan and its steps, and is void with them. */
 const builtUpon: Content['kind'][] = ['plan', 'step', 'completion'];
-const foundations: Content['kind'][] = ['reading', 'plan', 'step', 'settings', 'second_reading'];
+const foundations: Content['kind'][] = [
+  'as_found',
+  'reading',
+  'plan',
+  'step',
+  'settings',
+  'second_reading',
+];
 
 /** The write to be sent now. */
 export function nextToSend(writes: Write[], user: string): Write | undefined {

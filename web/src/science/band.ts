@@ -6,6 +6,7 @@
  */
 
 import type { Model } from '../api/types';
+import { needlesChange, parametersAt } from './needles';
 
 /** The earth's field at a place, nT, Z down positive. */
 export interface Field {
@@ -32,18 +33,21 @@ const headings = Array.from({ length: 360 / stepDeg }, (_, i) => i * stepDeg);
  * or when the model came without a covariance.
  */
 export function band95(model: Model, compassDeg: number, field: Field): number | null {
-  return band95By(model.covariance, coefficients(model, field), compassDeg, field);
+  return band95By(model, coefficients(model, field), compassDeg, field);
 }
 
 function band95By(
-  covariance: Model['covariance'],
+  model: Model,
   by: Coefficients,
   compassDeg: number,
   field: Field,
 ): number | null {
   const slopes = slopesOf(by, compassDeg, field);
-  if (!slopes || !covariance) return null;
-  const variance = quadratic(covariance, slopes);
+  if (!slopes || !model.covariance) return null;
+  const change = needlesChange(model, field.h_nt);
+  const turned = slopes.reduce((sum, slope, i) => sum + slope * (change[i] ?? 0), 0);
+  const ofNeedles = turned * (model.needles?.relative_sd ?? 0);
+  const variance = quadratic(model.covariance, slopes) + ofNeedles * ofNeedles;
   return variance >= 0 ? normal95 * Math.sqrt(variance) : null;
 }
 
@@ -53,7 +57,7 @@ export function widestBand(model: Model, field: Field): Widest | null {
   if (!steers(by)) return null;
   let widest: Widest | null = null;
   for (const compass_deg of headings) {
-    const found = band95By(model.covariance, by, compass_deg, field);
+    const found = band95By(model, by, compass_deg, field);
     if (found === null) return null;
     if (!widest || found > widest.band95_deg) widest = { compass_deg, band95_deg: found };
   }
@@ -83,7 +87,7 @@ function quadratic(covariance: number[][], v: number[]): number {
 type Coefficients = Record<'a' | 'b' | 'c' | 'd' | 'e', number>;
 
 function coefficients(model: Model, { h_nt, z_nt }: Field): Coefficients {
-  const p = model.parameters_over_lambda;
+  const p = parametersAt(model, h_nt);
   return {
     a: (p.chi21 - p.chi12) / 2,
     b: (p.bx_nt + p.chi13 * z_nt) / h_nt,

@@ -8,6 +8,7 @@
 
 import type { Model, ParameterName } from '../api/types';
 import { standardError } from './band';
+import { parametersAt } from './needles';
 import { parameterOrder } from './parameters';
 
 export type CoefficientName = 'A' | 'B' | 'C' | 'D' | 'E';
@@ -20,11 +21,11 @@ const degreesPerRadian = 180 / Math.PI;
  * model's constant is in A: headings cannot tell the two apart.
  */
 export function exactCoefficients(
-  model: Pick<Model, 'parameters_over_lambda' | 'constant_deg'>,
+  model: Pick<Model, 'parameters_over_lambda' | 'constant_deg' | 'needles'>,
   h_nt: number,
   z_nt: number,
 ): Record<CoefficientName, number> {
-  const p = model.parameters_over_lambda;
+  const p = parametersAt(model, h_nt);
   return {
     A: ((p.chi21 - p.chi12) / 2) * degreesPerRadian + model.constant_deg,
     B: ((p.bx_nt + p.chi13 * z_nt) / h_nt) * degreesPerRadian,

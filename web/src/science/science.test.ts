@@ -35,6 +35,13 @@ const row = (compass_deg: number, deviation_deg: number, band95_deg: number | nu
 });
 
 describe('coefficients', () => {
+  test('have the needles’ part of D twice where the field is half as strong', () => {
+    const needles = { d_nt: 720, e_nt: 0, reference_h_nt: 36_000, relative_sd: 0.1 };
+    const d = (h_nt: number) => exactCoefficients({ ...model, needles }, h_nt, 0).D;
+    expect(d(36_000)).toBeCloseTo(exactCoefficients(model, 36_000, 0).D, 9);
+    expect(d(18_000) - d(36_000)).toBeCloseTo(0.02 * 57.29578, 6);
+  });
+
   test('follow from the parameters and the field at the place', () => {
     const found = exactCoefficients(model, 24_000, 39_000);
     expect(found.A).toBeCloseTo(0.5 + 0.0002 * 57.29578, 6);

@@ -100,6 +100,7 @@ const deeds: Record<string, string> = {
   'POST /work-orders/{id}/on-board': 'Came on board',
   'POST /work-orders/{id}/berth-reading': 'Sent a reading at the berth',
   'POST /work-orders/{id}/second-reading': 'Read the field after the steps',
+  'POST /work-orders/{id}/as-found': 'Reported correctors as found',
   'POST /work-orders/{id}/corrector-settings': 'Wrote down how correctors stand',
   'POST /work-orders/{id}/plan': 'Chose a plan',
   'POST /work-orders/{id}/steps/{n}': 'Sent a reading after a step',

@@ -14,6 +14,7 @@ export const berth = {
     drop: 'Let it go',
     kinds: {
       on_board: 'On board',
+      as_found: 'How it was found',
       reading: 'Reading at the berth',
       plan: 'Choice of a plan',
       step: 'Step',
@@ -28,6 +29,7 @@ export const berth = {
       `No connection since ${when}. Going on is safe: what you enter is kept, and sent in order when it is back.`,
   },
   waitFor: {
+    as_found: 'How it was found is waiting to be sent.',
     reading:
       'The reading is waiting to be sent. The plan comes from ashore: as soon as there is a connection.',
     plan: 'Your choice is waiting to be sent.',
@@ -109,6 +111,34 @@ export const berth = {
       sd: 'The error has to be greater than 0.',
     },
   },
+  found: {
+    title: 'How it was found',
+    lead: 'Look at every corrector and at the compass before anything is moved. One red end written the wrong way would make every plan wrong.',
+    correctors: 'Each corrector: tick what you have looked at',
+    none: 'By the record, no corrector is in use.',
+    otherwise: 'One of them stands otherwise, or one is missing here',
+    difference: 'This is not what is recorded. Why?',
+    choose: 'Choose',
+    recordWrong: 'The record was wrong: they stood so all the time',
+    movedSince: 'Somebody moved them since the last headings',
+    dockside: 'The compass itself',
+    check: {
+      bubble: 'Bowl without a bubble',
+      pivot: 'Pivot: drawn aside by a magnet, the card returns to where it was',
+      gimbals: 'Gimbals: the bowl swings freely and hangs level',
+      lubber_line: 'Lubber line in the fore-and-aft plane',
+    },
+    sound: 'sound, or mended',
+    defective: 'defective',
+    turned: 'Turn each Kelvin sphere in its place: the most that the compass moved, degrees',
+    submit: 'This is how it was found',
+    offline: 'The record of the correctors comes from ashore: as soon as there is a connection.',
+    wrong: {
+      unseen: 'Tick each corrector that you have looked at.',
+      turned: 'Say by how much the compass moved while the spheres were turned; 0 if it did not.',
+      difference: 'Say why it is not what is recorded.',
+    },
+  },
   plans: {
     title: 'Choose a plan',
     lead: 'Each brings every heading to what is foretold. Fewer moves leave less to go wrong.',
@@ -134,14 +164,22 @@ export const berth = {
     },
     corrector: {
       flinders: 'Flinders bar',
-      quadrantal: 'Spheres',
+      quadrantal: 'Kelvin spheres',
       heeling: 'Heeling magnets',
       fore_and_aft: 'Fore-and-aft magnets',
       athwartship: 'Athwartship magnets',
     },
-    shapes: { sphere: 'Spheres', box: 'Boxes', plate: 'Plates' },
+    shapes: { sphere: 'Kelvin spheres', box: 'Boxes', plate: 'Plates' },
     from: 'From',
     to: 'To',
+    drawing: {
+      port: 'port',
+      starboard: 'starboard',
+      aft: 'aft',
+      forward: 'forward',
+      fromAft: 'Seen from aft.',
+      fromStarboard: 'Seen from starboard.',
+    },
     nowhere: 'not in use',
     out: 'out, to the spares',
     red: {
@@ -187,12 +225,15 @@ export const berth = {
       confirmed: 'Within what readings err',
       not_seen: 'Not to be seen on this heading',
       wrong_end: 'Wrong end',
+      found_otherwise: 'They stood otherwise than recorded: there is a new plan',
       other_strength: 'Other strength: there is a new plan',
       unexplained: 'Not explained: read again',
     } as Record<string, string>,
     todo: {
       wrong_end:
         'The magnets are in with the red end the wrong way. The plan below starts from how they stand now.',
+      found_otherwise:
+        'Before this step the magnets stood with the red end the other way than recorded. The plan below was made anew for the ship as she really is.',
       other_strength:
         'The corrector is stronger or weaker than was taken. The plan below was made anew from what you read.',
       unexplained:

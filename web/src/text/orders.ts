@@ -202,6 +202,7 @@ export const order = {
       call_moved: 'The port call moved',
       message: 'Message',
       on_board: 'Adjuster on board',
+      as_found: 'Correctors reported as found',
       berth_reading: 'Field read at the berth',
       plan: 'Plan chosen',
       step: 'Step done',

@@ -5,7 +5,7 @@
 //!
 //! `make study-adjust`, or
 //! `cargo run --release -p binnacle-adjustment --example adjust_study [SHIPS] [PART]`
-//! with `plans`, `changed`, `steps` or `sea` for one part alone.
+//! with `plans`, `hidden`, `changed`, `steps`, `berths` or `sea` for one part alone.
 
 #[allow(dead_code)]
 #[path = "../../tests/adjusting/mod.rs"]
@@ -24,6 +24,7 @@ mod sea;
 mod tally;
 
 use adjusting::knowledge::{FLUXGATE, Instruments, PHONE};
+use adjusting::scene::{ALL_KNOWN, Hidden};
 use hands::{Ending, Hands, Slip};
 use sea::Sea;
 use tally::Tally;
@@ -38,6 +39,19 @@ fn main() {
             for (design, which) in [("class A", 0), ("small", 1)] {
                 let tally = Tally::from_seeds(0..ships, which, instruments);
                 println!("{name}, {design}: {tally}");
+            }
+        }
+    }
+    if wanted("hidden") {
+        for (name, hidden) in hidden() {
+            println!("{name}: {}", Tally::hidden(0..ships, 0, FLUXGATE, hidden));
+        }
+    }
+    if wanted("berths") {
+        for (name, hidden) in hidden() {
+            for ending in [Ending::ByCompass, Ending::ReadAgain] {
+                let hands = Hands::from_seeds(0..ships, Slip::Berth(hidden), ending);
+                println!("{name}, {ending:?}: {hands}");
             }
         }
     }
@@ -67,6 +81,71 @@ fn main() {
             println!("wrong by {wrong_deg}: {sea}");
         }
     }
+}
+
+/// Class A: what the planner does not know.
+fn hidden() -> [(&'static str, Hidden); 9] {
+    [
+        ("all known", ALL_KNOWN),
+        (
+            "model from elsewhere",
+            Hidden {
+                model_from_elsewhere: true,
+                ..ALL_KNOWN
+            },
+        ),
+        (
+            "model from elsewhere that does not say so",
+            Hidden {
+                model_from_elsewhere: true,
+                model_without_waters: true,
+                ..ALL_KNOWN
+            },
+        ),
+        (
+            "wrong end in the inventory",
+            Hidden {
+                wrong_end: true,
+                ..ALL_KNOWN
+            },
+        ),
+        (
+            "4 microtesla of steel",
+            Hidden {
+                steel_nt: 4_000.0,
+                ..ALL_KNOWN
+            },
+        ),
+        (
+            "all known, second heading",
+            Hidden {
+                is_shifted: true,
+                ..ALL_KNOWN
+            },
+        ),
+        (
+            "4 microtesla of steel, second heading",
+            Hidden {
+                steel_nt: 4_000.0,
+                is_shifted: true,
+                ..ALL_KNOWN
+            },
+        ),
+        (
+            "heading 4 degrees off",
+            Hidden {
+                heading_off_deg: 4.0,
+                ..ALL_KNOWN
+            },
+        ),
+        (
+            "magnets 20 % weak",
+            Hidden {
+                lot_share: 0.8,
+                ..ALL_KNOWN
+            },
+        ),
+    ]
 }
 
 /// Class A: changes across the needle that turn the field by 5° to 10°, with a stated

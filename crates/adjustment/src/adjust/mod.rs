@@ -8,6 +8,7 @@
 //! possible cures instead of a plan. Nothing here is a certificate.
 
 mod inputs;
+mod needle_part;
 
 mod diagnosis;
 
@@ -23,6 +24,7 @@ mod limit_violations;
 mod instructions;
 mod planning;
 
+mod as_found;
 mod step_check;
 
 mod post_check;
@@ -36,10 +38,10 @@ pub use heeling::HeelingPlan;
 pub use inputs::{
     AdjustError, Adjustment, Berth, BerthForm, Circumstances, EarlierLambda, FieldForm, FormError,
     HeadingFrom, Limits, Magnetometer, NumberError, PostCheckForm, ReadingForm, SecondReadingForm,
-    Unit, VerticalReading, Water, WaterForm,
+    ShiftedReading, Unit, VerticalReading, Water, WaterForm,
 };
 pub use instructions::{Action, Corrector, Place, Step};
-pub use planning::{BerthCheck, HeadingVisibility, Outcome, Plan, plan};
+pub use planning::{BerthCheck, HeadingVisibility, Outcome, Plan, SecondHeading, plan};
 pub use post_check::{
     CompletedStep, FieldComponent, PostCheck, Slip, UpdatedPrediction, Verdict,
     check_second_reading, predict_by_compass,

@@ -6,7 +6,6 @@ use crate::binnacle::Setting;
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::deviation::DeviationError;
 use binnacle_compass::model::Model;
-use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
 
 /// Prediction on one compass heading.
@@ -59,14 +58,13 @@ pub(crate) fn tables(
     state: &MagneticState<'_>,
     setting: &Setting,
 ) -> Result<Vec<PredictedTable>, AdjustError> {
-    let model = state.model_with(setting)?;
-    tables_by(adjustment, |earth| state.model_at(&model, setting, earth))
+    tables_by(adjustment, &state.model_with(setting)?)
 }
 
-/// Predicts the deviations with a model that may depend on the field.
+/// Predicts the deviations with a model.
 pub(crate) fn tables_by(
     adjustment: &Adjustment<'_>,
-    model_at: impl Fn(EarthField) -> Result<Model, DeviationError>,
+    model: &Model,
 ) -> Result<Vec<PredictedTable>, AdjustError> {
     let berth = Water {
         name: "berth".to_owned(),
@@ -76,7 +74,6 @@ pub(crate) fn tables_by(
     };
     let places = std::iter::once(&berth).chain(adjustment.waters);
     let tables = places.map(|water| {
-        let model = model_at(water.earth())?;
         let rows: Result<Vec<PredictedRow>, DeviationError> = (0..HEADINGS)
             .map(|index| {
                 let compass_deg = f64::from(index) * 360.0 / f64::from(HEADINGS);
@@ -132,4 +129,45 @@ pub(crate) fn counted<'a>(
         .iter()
         .zip(counts)
         .filter_map(|(table, counts)| counts.then_some(table))
+}
+
+/// Assumed residual of a water with ambiguous headings, degrees.
+const AMBIGUOUS_DEG: f64 = 90.0;
+
+/// Returns the worst residual, weighted over the waters as in the search, degrees.
+pub(crate) fn weighted_worst_deg(waters: &[Water], after: &[PredictedTable]) -> f64 {
+    // The first table is for the berth.
+    let in_waters = waters.iter().zip(after.iter().skip(1));
+    let (weights, sum) = in_waters.fold((0.0, 0.0), |(weights, sum), (water, table)| {
+        let worst_deg = table.worst_deg.unwrap_or(AMBIGUOUS_DEG);
+        (weights + water.weight, sum + water.weight * worst_deg)
+    });
+    sum / weights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adjust::tests::case;
+
+    /// The search minimises the mean over the waters; the limit applies to the worst of
+    /// them.
+    #[test]
+    fn the_mean_over_the_waters_is_not_the_worst_of_them() {
+        let case = case(60.0);
+        let mut after = case.plan().plans.remove(0).after;
+        for (table, worst_deg) in after.iter_mut().zip([9.0, 1.0, 4.0]) {
+            table.worst_deg = Some(worst_deg);
+        }
+        // Two parts of the time in the first water, one in the second; the berth has no
+        // weight.
+        let mean_deg = weighted_worst_deg(&case.waters, &after);
+        assert!((mean_deg - 2.0).abs() < 1e-12, "{mean_deg}");
+        after[2].worst_deg = None;
+        let mean_deg = weighted_worst_deg(&case.waters, &after);
+        assert!(
+            (mean_deg - (2.0 + AMBIGUOUS_DEG) / 3.0).abs() < 1e-12,
+            "{mean_deg}"
+        );
+    }
 }

@@ -245,8 +245,8 @@ fn slope(
     compass: CompassHeading,
     earth: EarthField,
 ) -> Result<[f64; PARAMETERS + 1], DeviationError> {
-    let parameters = &model.parameters_over_lambda;
-    let (_, gradient) = linearised_at_compass(parameters, compass.radians(), earth)?;
+    let parameters = model.parameters_at(earth);
+    let (_, gradient) = linearised_at_compass(&parameters, compass.radians(), earth)?;
     let mut slope = [1.0; PARAMETERS + 1];
     for (degrees, radians) in slope.iter_mut().zip(gradient) {
         *degrees = radians.to_degrees();

@@ -4,10 +4,12 @@ use super::consistency::{Consistency, Verdict};
 use super::expected_field::{ExpectedField, Vector, dot};
 use super::reading::BerthReading;
 use binnacle_compass::angle::wrap_180;
-use binnacle_compass::deviation::NORMAL_99;
 use binnacle_compass::model::Covariance;
 use binnacle_compass::ship::{EarthField, compass_rad};
 
+/// Greatest angle that the given errors explain, in standard errors: two-sided 99.7 %, so
+/// that one sound berth in 370 is refused.
+const EXPLAINED_SD: f64 = 3.0;
 /// Greatest angle of a good berth, degrees, however wide its errors.
 const GOOD_DEG: f64 = 1.0;
 
@@ -34,7 +36,7 @@ pub(super) fn check_direction(
 }
 
 fn verdict(angle_deg: f64, standard_error_deg: Option<f64>) -> Verdict {
-    let explained = standard_error_deg.map_or(GOOD_DEG, |error| NORMAL_99 * error);
+    let explained = standard_error_deg.map_or(GOOD_DEG, |error| EXPLAINED_SD * error);
     if angle_deg > explained {
         Verdict::Inconsistent
     } else if angle_deg > GOOD_DEG {

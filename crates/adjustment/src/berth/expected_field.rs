@@ -8,7 +8,7 @@ use binnacle_compass::model::{Covariance, Model, Parameters};
 use binnacle_compass::ship::{EarthField, PARAMETERS};
 
 /// Seven parameters and the constant.
-pub(super) const UNKNOWNS: usize = PARAMETERS + 1;
+pub const UNKNOWNS: usize = PARAMETERS + 1;
 
 /// Least directive force, as a share of its mean; with less, direction and strength are
 /// small differences of large numbers.
@@ -24,7 +24,7 @@ pub(super) struct ExpectedField {
     /// Slope by the magnetic heading, nT per radian.
     by_heading: Vector,
     /// Slopes by the parameters in their order and by the constant in degrees.
-    by_unknown: [Vector; UNKNOWNS],
+    pub(super) by_unknown: [Vector; UNKNOWNS],
 }
 
 /// Gradient of a quantity by the model's unknowns, and its variance from all errors of the
@@ -90,6 +90,29 @@ impl ExpectedField {
             u: p.field_over_lambda(magnetic_rad, earth),
             by_heading: slope_by_heading(p, in_ship_axes),
             by_unknown: slopes(p, in_ship_axes, heading_by_constant),
+        })
+    }
+
+    /// Returns the covariance of the measured parts by the reading's own errors, nT².
+    pub(super) fn part_errors(
+        &self,
+        reading: &BerthReading,
+        earth: EarthField,
+        lambda: f64,
+    ) -> [Vector; 2] {
+        let errors = reading.errors();
+        let [forward, starboard] = reading.field_nt();
+        let leaked_nt = earth.z_nt * errors.tilt_sd_deg.to_radians();
+        let each_part = errors.field_sd_nt.powi(2) + leaked_nt.powi(2);
+        let turned = errors.alignment_sd_deg.to_radians();
+        let turned = [starboard * turned, -forward * turned];
+        let headed = errors.heading_sd_deg.to_radians() * lambda;
+        let headed = self.by_heading.map(|part| part * headed);
+        std::array::from_fn(|row| {
+            std::array::from_fn(|column| {
+                let own = if row == column { each_part } else { 0.0 };
+                own + turned[row] * turned[column] + headed[row] * headed[column]
+            })
         })
     }
 

@@ -7,6 +7,7 @@ use super::estimated::Estimated;
 use super::expected_field::{ExpectedField, Spread, UNKNOWNS, covariances, dot};
 use super::lambda_range::{GREATEST_LAMBDA, LEAST_LAMBDA};
 use super::reading::BerthReading;
+use super::two_headings::TwoHeadings;
 use binnacle_compass::model::{Covariance, Model, Parameters};
 use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
@@ -87,6 +88,23 @@ pub fn lambda_at_berth(
         parameters: FullParameters::new(&model.parameters_over_lambda, lambda, joint.as_ref()),
         covariance: joint,
     })
+}
+
+impl BerthEstimate {
+    /// Takes λ and its errors from readings on two headings.
+    pub(crate) fn replace_lambda(&mut self, found: &TwoHeadings) {
+        self.lambda = Estimated {
+            value: found.lambda,
+            standard_error: self.covariance.map(|_| found.standard_error),
+        };
+        if let Some(joint) = &mut self.covariance {
+            for (row, with_lambda) in found.with_model.into_iter().enumerate() {
+                joint[row][LAMBDA] = with_lambda;
+                joint[LAMBDA][row] = with_lambda;
+            }
+            joint[LAMBDA][LAMBDA] = found.standard_error.powi(2);
+        }
+    }
 }
 
 /// Combines the model's covariance with λ, whose error depends on the model's unknowns.

@@ -16,6 +16,7 @@ mod lambda_range;
 
 mod lambda;
 mod permanent;
+mod two_headings;
 
 mod direction_check;
 mod error;
@@ -30,6 +31,7 @@ pub use lambda_range::{GREATEST_LAMBDA, LEAST_LAMBDA, USUAL_LAMBDA};
 pub use permanent::{Permanent, permanent_at_berth};
 pub use reading::{Alignment, BerthReading};
 pub use reading_errors::ReadingErrors;
+pub use two_headings::{TwoHeadings, lambda_by_two_headings};
 
 #[cfg(test)]
 mod tests;

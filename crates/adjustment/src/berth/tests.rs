@@ -48,6 +48,8 @@ fn model_of(ship: &ShipMagnetism) -> Model {
         samples_rejected: 0,
         quality: None,
         reference_grade: ReferenceGrade::Heading,
+        mean_h_nt: None,
+        needles: None,
     }
 }
 
@@ -457,4 +459,32 @@ fn an_estimate_comes_back_from_json() {
     assert!(json.contains(r#""verdict":"consistent""#), "{json}");
     let again: BerthEstimate = serde_json::from_str(&json).unwrap();
     assert!((again.lambda.value - found.lambda.value).abs() < 1e-12);
+}
+
+/// 4 µT of steel along the needle passes for another λ on one heading, and for nothing but
+/// steel on two.
+#[test]
+fn two_headings_separate_the_quay_from_lambda() {
+    let quay_nt = [3_500.0, -1_900.0];
+    let beside = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let [x, y] = field_read(&ship(), BISCAY, degrees);
+        let [north, east] = quay_nt;
+        reading(
+            degrees,
+            [x + north * cos + east * sin, y - north * sin + east * cos],
+        )
+    };
+    let model = model_of(&ship());
+    let readings = [beside(20.0), beside(140.0)];
+    let found = lambda_by_two_headings(&model, BISCAY, [&readings[0], &readings[1]], 0.9).unwrap();
+    assert!((found.lambda - ship().lambda()).abs() < 0.005, "{found:?}");
+    for (found, truly) in found.quay_nt.into_iter().zip(quay_nt) {
+        assert!((found - truly).abs() < 150.0, "{found} {truly}");
+    }
+    assert!(found.is_quay_seen && !found.is_unexplained);
+    let clean = [faultless(20.0), faultless(140.0)];
+    let found = lambda_by_two_headings(&model, BISCAY, [&clean[0], &clean[1]], 0.9).unwrap();
+    assert!((found.lambda - ship().lambda()).abs() < 1e-6, "{found:?}");
+    assert!(!found.is_quay_seen && !found.is_unexplained && found.standard_error < 0.02);
 }

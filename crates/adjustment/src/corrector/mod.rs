@@ -12,12 +12,15 @@ mod magnet;
 mod sphere;
 
 mod iron;
+mod needles;
 mod setting_effect;
 
 pub use effect::{Effect, Vector};
 pub use flinders::{Bar, demagnetising};
 pub use iron::Iron;
 pub use magnet::{BarMagnet, MAGNETIC};
+pub use needles::needles_of_model;
+pub(crate) use needles::{NEEDLE_SD, needle_induction};
 pub use setting_effect::{effect, heeling_effect, heeling_field, magnet_field, tray_effect};
 pub use sphere::{KAPPA, Pair};
 

@@ -165,6 +165,8 @@ impl Case {
             samples_rejected: 0,
             quality: None,
             reference_grade: ReferenceGrade::Heading,
+            mean_h_nt: None,
+            needles: None,
         }
     }
 

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)] // a study
 
 use super::adjusting::knowledge::{FLUXGATE, again};
-use super::adjusting::scene::Scene;
+use super::adjusting::scene::{ALL_KNOWN, Hidden, Scene};
 use super::adjusting::wrap;
 use super::tally::{mean, quantile};
 use binnacle_adjustment::adjust::{
@@ -35,6 +35,8 @@ pub(crate) enum Slip {
     WrongEnd,
     /// Magnets some holes too high.
     Hole(i32),
+    /// Something that the planner does not know, at the berth itself.
+    Berth(Hidden),
 }
 
 /// Verification after the steps.
@@ -62,6 +64,8 @@ pub(crate) struct Hands {
     /// Mean half-width of the band, degrees.
     pub(crate) half_width_deg: Vec<f64>,
     pub(crate) worst_deg: Vec<f64>,
+    /// Adjustments that end with a worst true residual beyond the stated one with its band.
+    pub(crate) outside: u64,
 }
 
 /// Upper ends of the classes of slips, degrees.
@@ -139,12 +143,15 @@ impl Hands {
     }
 
     fn add(&mut self, seed: u64, slip: Slip, ending: Ending) {
-        let share = if let Slip::Moment(share) = slip {
-            share
-        } else {
-            1.0
+        let hidden = match slip {
+            Slip::Moment(lot_share) => Hidden {
+                lot_share,
+                ..ALL_KNOWN
+            },
+            Slip::Berth(hidden) => hidden,
+            _ => ALL_KNOWN,
         };
-        let mut scene = Scene::with_lot(seed, 0, FLUXGATE, share);
+        let mut scene = Scene::with(seed, 0, FLUXGATE, hidden);
         let outcome = plan(&scene.adjustment()).unwrap();
         if outcome.plans.is_empty() {
             return;
@@ -159,13 +166,13 @@ impl Hands {
                 }
                 Some(magnets[scene.rng.below(magnets.len())])
             }
-            Slip::None | Slip::Moment(_) => None,
+            Slip::None | Slip::Moment(_) | Slip::Berth(_) => None,
         };
         self.ships += 1;
         let mut work = Work {
             binnacle: scene.binnacle.clone(),
             standing: scene.binnacle.setting.clone(),
-            slipped: None,
+            slipped: scene.misrecorded.clone(),
             slip,
             slips_at,
             done: Vec::new(),
@@ -194,6 +201,10 @@ impl Hands {
                 let standing = work.standing.clone();
                 let adjustment = work.adjustment(scene, &standing);
                 let learnt = predict_by_compass(&adjustment, &work.done).unwrap();
+                let (limits, waters) = (&adjustment.limits, adjustment.waters);
+                if learnt.limit_violation(limits, waters).is_some() {
+                    return "asked to read again";
+                }
                 self.end(scene, &learnt.after, work);
                 Next::Ended("done")
             };
@@ -246,6 +257,12 @@ impl Hands {
             StepCheck::WrongEnd {
                 setting, outcome, ..
             } => (setting, None, outcome),
+            StepCheck::FoundOtherwise {
+                binnacle,
+                setting,
+                outcome,
+                ..
+            } => (setting, Some(binnacle), outcome),
             StepCheck::OtherStrength {
                 setting,
                 binnacle,
@@ -271,7 +288,7 @@ impl Hands {
         if work.readings > MOST_READINGS {
             return Next::Ended("never confirmed");
         }
-        let truth = scene.truth.with(&work.truly(&work.standing));
+        let truth = scene.at_berth(&work.truly(&work.standing));
         let place = scene.place();
         let (reading, down_nt) = again(&mut scene.rng, &truth, place, FLUXGATE, &scene.berthed);
         let adjustment = work.adjustment(scene, &work.standing);
@@ -317,9 +334,12 @@ impl Hands {
     fn end(&mut self, scene: &Scene, after: &[PredictedTable], work: &Work) {
         let adjusted = scene.truth.with(&work.truly(&work.standing));
         let (mut held, mut headings, mut worst, mut widths) = (0_u32, 0_u32, 0.0_f64, 0.0);
+        let mut is_outside = false;
         for table in after {
             let place = (table.h_nt, table.z_nt);
-            worst = worst.max(adjusted.worst_deg(place));
+            let worst_here = adjusted.worst_deg(place);
+            is_outside |= table.reach_deg.is_none_or(|reach| worst_here > reach);
+            worst = worst.max(worst_here);
             for row in &table.rows {
                 let residual = adjusted.deviation_deg(place, row.compass_deg);
                 headings += 1;
@@ -331,12 +351,13 @@ impl Hands {
         self.held.push(f64::from(held) / f64::from(headings));
         self.half_width_deg.push(widths / f64::from(headings));
         self.worst_deg.push(worst);
+        self.outside += u64::from(is_outside);
     }
 }
 
 /// Card reading at the berth, degrees.
 fn shown(scene: &mut Scene, setting: &Setting) -> f64 {
-    let standing = scene.truth.with(setting);
+    let standing = scene.at_berth(setting);
     let truly = standing.compass_deg(scene.place(), scene.berthed.magnetic_deg);
     (truly + CARD_SD_DEG * scene.rng.gaussian()).rem_euclid(360.0)
 }
@@ -359,7 +380,7 @@ fn slipped(binnacle: &Binnacle, step: &Step, slip: Slip) -> Option<(Axis, Tray, 
             }
             binnacle.with_setting(after).ok()?;
         }
-        Slip::None | Slip::Moment(_) => return None,
+        Slip::None | Slip::Moment(_) | Slip::Berth(_) => return None,
     }
     Some((axis, meant.clone(), done))
 }
@@ -369,6 +390,7 @@ fn name(found: &StepCheck) -> &'static str {
         StepCheck::Confirmed { .. } => "confirmed",
         StepCheck::NotSeen { .. } => "not seen",
         StepCheck::WrongEnd { .. } => "wrong end",
+        StepCheck::FoundOtherwise { .. } => "found otherwise",
         StepCheck::OtherStrength { .. } => "other strength",
         StepCheck::Unexplained { .. } => "unexplained",
     }
@@ -382,11 +404,12 @@ impl fmt::Display for Hands {
         let within = self.worst_deg.iter().filter(|worst| **worst <= 3.0).count() as f64;
         write!(
             f,
-            "{} adjustments, ended {:?}; band held {:.1} % (standard error {:.1}), mean half-width \
+            "{} adjustments, ended {:?}; worst beyond the stated {}; band held {:.1} % (standard error {:.1}), mean half-width \
              {:.2}, within 3 degrees {:.1} %; worst {:.2} / {:.2}; right steps {:?}; read again \
              when right {:?}, when slipped {:?}; slips",
             self.ships,
             self.ended,
+            self.outside,
             100.0 * held,
             100.0 * squares.sqrt() / plans,
             mean(&self.half_width_deg),

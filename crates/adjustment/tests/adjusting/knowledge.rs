@@ -146,6 +146,8 @@ pub(crate) fn exactly(truth: &Standing, waters: &[Water]) -> Model {
         samples_rejected: 0,
         quality: None,
         reference_grade: ReferenceGrade::Heading,
+        mean_h_nt: Some(mean_h),
+        needles: None,
     }
 }
 
@@ -189,6 +191,16 @@ pub(crate) struct Berthed {
 }
 
 impl Berthed {
+    /// Returns the reading with a given heading that is off by this.
+    pub(crate) fn misheaded(self, off_deg: f64, instruments: Instruments) -> Berthed {
+        let given_deg = self.given_deg + off_deg;
+        Berthed {
+            reading: read(self.reading.field_nt(), given_deg, instruments),
+            given_deg,
+            ..self
+        }
+    }
+
     /// Returns the reading with other stated errors.
     pub(crate) fn said_by(self, instruments: Instruments) -> Berthed {
         Berthed {

@@ -63,6 +63,13 @@ impl Truth {
 }
 
 impl Standing {
+    /// Adds steel beside the ship, of this field in ship axes, nT.
+    pub(crate) fn beside(mut self, steel_nt: [f64; 2]) -> Standing {
+        self.b_nt[0] += steel_nt[0];
+        self.b_nt[1] += steel_nt[1];
+        self
+    }
+
     /// Compass heading on a magnetic heading, degrees.
     pub(crate) fn compass_deg(&self, place: Place, magnetic_deg: f64) -> f64 {
         let [x, y, _] = self.field(place, magnetic_deg);

@@ -8,7 +8,8 @@ use super::{Place, Standing, Truth};
 use binnacle_adjustment::adjust::{
     Adjustment, Circumstances, EarlierLambda, Limits, VerticalReading, Water,
 };
-use binnacle_adjustment::binnacle::Binnacle;
+use binnacle_adjustment::berth::BerthReading;
+use binnacle_adjustment::binnacle::{Axis, Binnacle, Setting, Tray};
 use binnacle_compass::model::Model;
 use binnacle_compass::time::Timestamp;
 
@@ -16,8 +17,39 @@ use binnacle_compass::time::Timestamp;
 /// degrees.
 const CARD_SD_DEG: f64 = 0.4;
 
+/// Facts that the planner does not know, and whether a second heading was read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Hidden {
+    /// Share of their stated moment that all magnets have.
+    pub(crate) lot_share: f64,
+    /// The model was fitted in other waters than the plan's.
+    pub(crate) model_from_elsewhere: bool,
+    /// The model does not say in which waters it was fitted.
+    pub(crate) model_without_waters: bool,
+    /// Field of steel on the quay in some direction, nT.
+    pub(crate) steel_nt: f64,
+    /// Error of the given heading, degrees.
+    pub(crate) heading_off_deg: f64,
+    /// One tray of magnets has the wrong red end in the inventory.
+    pub(crate) wrong_end: bool,
+    /// The ship was shifted to another heading and read there too.
+    pub(crate) is_shifted: bool,
+}
+
+/// Nothing is hidden from the planner.
+pub(crate) const ALL_KNOWN: Hidden = Hidden {
+    lot_share: 1.0,
+    model_from_elsewhere: false,
+    model_without_waters: false,
+    steel_nt: 0.0,
+    heading_off_deg: 0.0,
+    wrong_end: false,
+    is_shifted: false,
+};
+
 /// A random scene.
 pub(crate) struct Scene {
+    pub(crate) seed: u64,
     pub(crate) rng: Random,
     pub(crate) binnacle: Binnacle,
     pub(crate) truth: Truth,
@@ -28,6 +60,12 @@ pub(crate) struct Scene {
     /// Error of the model's reference.
     pub(crate) reference_deg: f64,
     pub(crate) berthed: Berthed,
+    /// The tray with the wrong end in the inventory: its axis, as written, and as it is.
+    pub(crate) misrecorded: Option<(Axis, Tray, Tray)>,
+    /// Reading on another heading of the berth.
+    shifted: Option<BerthReading>,
+    /// Field of steel on the quay in ship axes, nT.
+    steel_nt: [f64; 2],
     /// Compass heading there with the first setting.
     compass_deg: f64,
     scale_sd: f64,
@@ -37,26 +75,52 @@ pub(crate) struct Scene {
 impl Scene {
     /// Makes a ship with a binnacle of one of the shipped designs.
     pub(crate) fn new(seed: u64, which: usize, instruments: Instruments) -> Scene {
-        Scene::with_lot(seed, which, instruments, 1.0)
+        Scene::with(seed, which, instruments, ALL_KNOWN)
     }
 
-    /// Makes a ship whose magnets all have this share of their stated moment.
-    pub(crate) fn with_lot(seed: u64, which: usize, instruments: Instruments, share: f64) -> Scene {
+    /// Makes a ship of which the planner does not know everything.
+    pub(crate) fn with(seed: u64, which: usize, instruments: Instruments, hidden: Hidden) -> Scene {
         let mut rng = Random::new(seed);
+        // A separate generator keeps everything else unchanged.
+        let mut hidden_rng = Random::new(seed ^ 0x5eed);
         let binnacle = super::binnacle(&mut rng, which);
         let mut truth = super::ship(&mut rng, &binnacle);
-        truth.fitted.lot_share = share;
+        truth.fitted.lot_share = hidden.lot_share;
         // Small binnacles, without a Flinders bar, stay in one sea.
         let waters = waters(&mut rng, if which == 0 { 1.0 } else { 0.15 });
         let standing = truth.with(&binnacle.setting);
         let reference_deg = REFERENCE_SD_DEG * rng.gaussian();
-        let model = model_by(&mut rng, &standing, &waters, reference_deg);
+        let fitted_in = if hidden.model_from_elsewhere {
+            super::knowledge::waters(&mut hidden_rng, if which == 0 { 1.0 } else { 0.15 })
+        } else {
+            waters.clone()
+        };
+        let mut model = model_by(&mut rng, &standing, &fitted_in, reference_deg);
+        if hidden.model_without_waters {
+            model.mean_h_nt = None;
+        }
+        let (sin, cos) = hidden_rng.between(0.0, std::f64::consts::TAU).sin_cos();
+        let steel_nt = [cos, sin].map(|part| hidden.steel_nt * part);
+        let standing = standing.beside(steel_nt);
         let place = (waters[0].h_nt, waters[0].z_nt);
         let berthed = reading(&mut rng, &standing, place, instruments);
-        // A separate generator keeps everything else unchanged.
+        let shifted = hidden.is_shifted.then(|| {
+            let heading = berthed.magnetic_deg + hidden_rng.between(80.0, 280.0);
+            let quay_nt = turned(steel_nt, heading - berthed.magnetic_deg);
+            let there = truth.with(&binnacle.setting).beside(quay_nt);
+            reading_on(&mut hidden_rng, &there, place, heading, instruments).reading
+        });
+        let side = if hidden_rng.unit() < 0.5 { -1.0 } else { 1.0 };
+        let berthed = berthed.misheaded(side * hidden.heading_off_deg, instruments);
+        let (binnacle, misrecorded) = if hidden.wrong_end {
+            misrecord(&mut hidden_rng, binnacle)
+        } else {
+            (binnacle, None)
+        };
         let misread_deg = CARD_SD_DEG * Random::new(!seed).gaussian();
         let compass_deg = standing.compass_deg(place, berthed.magnetic_deg) + misread_deg;
         Scene {
+            seed,
             rng,
             binnacle,
             truth,
@@ -65,6 +129,9 @@ impl Scene {
             model,
             reference_deg,
             berthed,
+            misrecorded,
+            shifted,
+            steel_nt,
             compass_deg: compass_deg.rem_euclid(360.0),
             scale_sd: instruments.scale_sd,
             earlier_lambda: None,
@@ -103,6 +170,22 @@ impl Scene {
         });
     }
 
+    /// The ship at the berth with a setting of the correctors.
+    pub(crate) fn at_berth(&self, setting: &Setting) -> Standing {
+        self.truth.with(setting).beside(self.steel_nt)
+    }
+
+    /// The setting as it is, where the inventory says this one.
+    pub(crate) fn truly(&self, written: &Setting) -> Setting {
+        let mut truly = written.clone();
+        if let Some((axis, wrong, right)) = &self.misrecorded {
+            for tray in truly.trays_mut(*axis).iter_mut().filter(|t| *t == wrong) {
+                tray.clone_from(right);
+            }
+        }
+        truly
+    }
+
     /// Field at the berth.
     pub(crate) fn place(&self) -> Place {
         (self.waters[0].h_nt, self.waters[0].z_nt)
@@ -124,9 +207,32 @@ impl Scene {
             waters: &self.waters,
             circumstances: Circumstances {
                 earlier_lambda: self.earlier_lambda,
+                shifted: self.shifted,
                 ..Circumstances::default()
             },
             limits: Limits::default(),
         }
     }
+}
+
+/// A field that stays where it is, in the axes of a ship that has turned clockwise.
+fn turned([x, y]: [f64; 2], by_deg: f64) -> [f64; 2] {
+    let (sin, cos) = by_deg.to_radians().sin_cos();
+    [x * cos + y * sin, y * cos - x * sin]
+}
+
+/// Writes one tray of the binnacle's magnets with the wrong red end.
+fn misrecord(rng: &mut Random, binnacle: Binnacle) -> (Binnacle, Option<(Axis, Tray, Tray)>) {
+    let mut setting = binnacle.setting.clone();
+    let axis = Axis::BOTH[rng.below(2)];
+    let Some(tray) = setting.trays_mut(axis).first_mut() else {
+        return (binnacle, None);
+    };
+    let right = tray.clone();
+    tray.red = tray.red.reversed();
+    let wrong = tray.clone();
+    (
+        binnacle.with_setting(setting).unwrap(),
+        Some((axis, wrong, right)),
+    )
 }

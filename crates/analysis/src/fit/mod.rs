@@ -16,7 +16,7 @@ mod time_outliers;
 mod variation_check;
 
 pub use crate::gyro_speed_error::gyro_speed_error_deg;
-pub use crate::observation::Observation;
+pub use crate::observation::{Observation, mean_h_nt};
 pub use csv_row::{CsvRow, CsvRowError, Motion, check_columns, readings_from_csv, reference_grade};
 pub use heading_check::Headings;
 pub use ols::fit_ols;

@@ -10,7 +10,7 @@ use super::normal_equations::{
     Matrix, Vector, as_mounted, check_number, covariance, find_turn, identifiable, invert,
 };
 use super::robust::{check_field, is_usable};
-use crate::observation::Observation;
+use crate::observation::{Observation, mean_h_nt};
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::linearised_at_compass;
 use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
@@ -66,6 +66,8 @@ pub fn fit_ols(observations: &[Observation]) -> Result<Model, FitError> {
         samples_rejected: observations.len() as u64 - found,
         quality: None,
         reference_grade: ReferenceGrade::Heading,
+        mean_h_nt: mean_h_nt(&rows),
+        needles: None,
     };
     Ok(as_mounted(straight, turn))
 }

@@ -5,7 +5,7 @@ use super::heading_check::check_headings;
 use super::variation_check::possible_mistake;
 use super::{residual_check, time_outliers};
 use crate::estimate::{Options, Prior, Turn, estimate};
-use crate::observation::Observation;
+use crate::observation::{Observation, mean_h_nt};
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Model, Parameters, ReferenceGrade};
 use binnacle_compass::result::{FitError, NoiseLevels};
@@ -157,6 +157,8 @@ fn fit_usable(
         samples_rejected: observations.len() as u64 - samples_used,
         quality: Some(quality),
         reference_grade: ReferenceGrade::Heading,
+        mean_h_nt: mean_h_nt(rows),
+        needles: None,
     };
     Ok(RobustFit {
         model,

@@ -112,6 +112,8 @@ impl Normal {
             samples_rejected: 0,
             quality: None,
             reference_grade: ReferenceGrade::Heading,
+            mean_h_nt: None,
+            needles: None,
         }
     }
 }

@@ -7,6 +7,7 @@
 
 mod approximate;
 mod model_check;
+mod needles;
 mod prediction;
 
 pub use approximate::CoefficientsInDegrees;

@@ -3,7 +3,8 @@
 //! A model from a file or the network is checked once, where it is read. After that its
 //! numbers are finite, of a ship's size, and its covariance is positive semidefinite.
 
-use crate::model::{Covariance, Model};
+use crate::model::{Covariance, Model, NeedleInduction};
+use crate::ship::WEAKEST_H_NT;
 use nalgebra::SMatrix;
 
 /// Names of the parameters and the constant, in the covariance's order.
@@ -38,6 +39,18 @@ pub enum ModelError {
         value: f64,
         /// Greatest accepted magnitude.
         limit: f64,
+    },
+    /// The mean field, or a number of the needles' part, is out of its range.
+    #[error("{name} is {value}, not a number between {least} and {greatest}")]
+    Range {
+        /// Name of the number, as in JSON.
+        name: &'static str,
+        /// Given value.
+        value: f64,
+        /// Least accepted value.
+        least: f64,
+        /// Greatest accepted value.
+        greatest: f64,
     },
     /// The residuals' root mean square is negative or not finite.
     #[error("rms_deg is {0}, not a positive number")]
@@ -87,8 +100,58 @@ impl Model {
         {
             return Err(ModelError::Rms(rms));
         }
+        if let Some(mean_h_nt) = self.mean_h_nt {
+            check_range("mean_h_nt", mean_h_nt, WEAKEST_H_NT, GREATEST_FIELD_NT)?;
+        }
+        if let Some(needles) = &self.needles {
+            check_needles(needles)?;
+        }
         self.covariance.as_ref().map_or(Ok(()), check_covariance)
     }
+}
+
+fn check_needles(needles: &NeedleInduction) -> Result<(), ModelError> {
+    for (name, value, least, greatest) in [
+        (
+            "needles.d_nt",
+            needles.d_nt,
+            -GREATEST_FIELD_NT,
+            GREATEST_FIELD_NT,
+        ),
+        (
+            "needles.e_nt",
+            needles.e_nt,
+            -GREATEST_FIELD_NT,
+            GREATEST_FIELD_NT,
+        ),
+        (
+            "needles.reference_h_nt",
+            needles.reference_h_nt,
+            WEAKEST_H_NT,
+            GREATEST_FIELD_NT,
+        ),
+        ("needles.relative_sd", needles.relative_sd, 0.0, 1.0),
+    ] {
+        check_range(name, value, least, greatest)?;
+    }
+    Ok(())
+}
+
+fn check_range(
+    name: &'static str,
+    value: f64,
+    least: f64,
+    greatest: f64,
+) -> Result<(), ModelError> {
+    if (least..=greatest).contains(&value) {
+        return Ok(());
+    }
+    Err(ModelError::Range {
+        name,
+        value,
+        least,
+        greatest,
+    })
 }
 
 fn check_covariance(covariance: &Covariance) -> Result<(), ModelError> {
@@ -154,6 +217,8 @@ mod tests {
             samples_rejected: 3,
             quality: None,
             reference_grade: ReferenceGrade::Heading,
+            mean_h_nt: None,
+            needles: None,
         }
     }
 

@@ -40,8 +40,8 @@ impl Model {
         compass: CompassHeading,
         earth: EarthField,
     ) -> Result<Prediction, DeviationError> {
-        let parameters = &self.parameters_over_lambda;
-        let (radians, gradient) = linearised_at_compass(parameters, compass.radians(), earth)?;
+        let parameters = self.parameters_at(earth);
+        let (radians, gradient) = linearised_at_compass(&parameters, compass.radians(), earth)?;
         let deviation = Deviation::new(radians.to_degrees() + self.constant_deg)
             .ok_or(DeviationError::NotFinite)?;
         let Some(covariance) = &self.covariance else {
@@ -51,7 +51,12 @@ impl Model {
                 band95_deg: None,
             });
         };
-        let standard_error = standard_error_deg(covariance, &gradient)?;
+        let of_needles = self.needles.map_or(0.0, |needles| {
+            let change = needles.change(earth);
+            let turned: f64 = gradient.iter().zip(change).map(|(g, c)| g * c).sum();
+            needles.relative_sd * turned.to_degrees()
+        });
+        let standard_error = standard_error_deg(covariance, &gradient)?.hypot(of_needles);
         Ok(Prediction {
             deviation,
             standard_error_deg: Some(standard_error),
@@ -80,7 +85,7 @@ impl Model {
         magnetic: MagneticHeading,
         earth: EarthField,
     ) -> Result<CompassHeading, DeviationError> {
-        let coefficients = Coefficients::new(&self.parameters_over_lambda, earth)?;
+        let coefficients = Coefficients::new(&self.parameters_at(earth), earth)?;
         // The constant is not part of the ship's magnetism and is removed first.
         let by_the_ship = MagneticHeading::new(magnetic.degrees() - self.constant_deg)
             .ok_or(DeviationError::NotFinite)?;
@@ -127,7 +132,7 @@ fn standard_error_deg(
 mod tests {
     use super::*;
     use crate::angle::wrap_180;
-    use crate::model::{Parameters, ReferenceGrade};
+    use crate::model::{NeedleInduction, Parameters, ReferenceGrade};
     use crate::ship::test_support::{random_earth, random_ship};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -156,6 +161,8 @@ mod tests {
             samples_rejected: 0,
             quality: None,
             reference_grade: ReferenceGrade::Heading,
+            mean_h_nt: None,
+            needles: None,
         }
     }
 
@@ -190,6 +197,45 @@ mod tests {
             assert!((with.standard_error_deg.unwrap() - 0.5).abs() < 1e-12);
             assert!((with.band95_deg.unwrap() - 0.98).abs() < 1e-3);
         }
+    }
+
+    /// D of 2° by the needles at 36 µT is 4° at 18 µT, on the headings between the cardinal
+    /// points, and its error is in the band.
+    #[test]
+    fn what_the_needles_induce_grows_as_the_horizontal_field_falls() {
+        let mut model = model();
+        let (strong_nt, d) = (36_000.0, 2_f64.to_radians());
+        model.parameters_over_lambda = Parameters {
+            chi11_minus_chi22: 2.0 * d,
+            ..Parameters::from_array([0.0; PARAMETERS])
+        };
+        model.constant_deg = 0.0;
+        model.covariance = Some([[0.0; 8]; 8]);
+        model.needles = Some(NeedleInduction {
+            d_nt: d * strong_nt,
+            e_nt: 0.0,
+            reference_h_nt: strong_nt,
+            relative_sd: 0.1,
+        });
+        let north_east = |h_nt: f64| {
+            let earth = EarthField { h_nt, z_nt: 0.0 };
+            let found = model.deviation(heading(45.0), earth).unwrap();
+            (
+                found.deviation.degrees_east(),
+                found.standard_error_deg.unwrap(),
+            )
+        };
+        let ((strong_deg, known), (weak_deg, sd_deg)) = (north_east(strong_nt), north_east(18e3));
+        assert!(
+            (strong_deg - 2.0).abs() < 0.01 && known < 1e-9,
+            "{strong_deg}"
+        );
+        assert!((weak_deg - 4.0).abs() < 0.02, "{weak_deg}");
+        assert!((sd_deg - 0.2).abs() < 0.01, "{sd_deg}");
+        let text = serde_json::to_string(&model).unwrap();
+        assert_eq!(serde_json::from_str::<Model>(&text).unwrap(), model);
+        model.needles.as_mut().unwrap().reference_h_nt = 0.0;
+        assert!(model.check().is_err());
     }
 
     #[test]

@@ -6,7 +6,9 @@
 //! its other fields may have another meaning. A changed meaning takes the next number; a
 //! new optional field does not.
 
-use super::{Covariance, Identifiable, Model, Parameters, Quality, ReferenceGrade};
+use super::{
+    Covariance, Identifiable, Model, NeedleInduction, Parameters, Quality, ReferenceGrade,
+};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -55,6 +57,13 @@ pub(super) struct Form {
     /// Source of the true headings behind the model: gyro or satellite compass where absent.
     #[serde(default, skip_serializing_if = "ReferenceGrade::is_heading")]
     reference_grade: ReferenceGrade,
+    /// Harmonic mean of the horizontal field over the samples, nT; absent where unknown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    mean_h_nt: Option<f64>,
+    /// The needles' part of D and E, which grows as 1/H; absent where the correctors are
+    /// unknown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    needles: Option<NeedleInduction>,
 }
 
 fn version() -> u32 {
@@ -84,6 +93,8 @@ impl From<Form> for Model {
             samples_rejected: form.samples_rejected,
             quality: form.quality,
             reference_grade: form.reference_grade,
+            mean_h_nt: form.mean_h_nt,
+            needles: form.needles,
         }
     }
 }
@@ -101,6 +112,8 @@ impl From<Model> for Form {
             samples_rejected: model.samples_rejected,
             quality: model.quality,
             reference_grade: model.reference_grade,
+            mean_h_nt: model.mean_h_nt,
+            needles: model.needles,
         }
     }
 }

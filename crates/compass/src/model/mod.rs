@@ -1,9 +1,11 @@
 //! A vessel's fitted magnetic model, as stored and sent on board.
 
 mod json;
+mod needles;
 mod reference_grade;
 mod variation_mistake;
 
+pub use needles::NeedleInduction;
 pub use reference_grade::{Directions, ReferenceGrade};
 pub use variation_mistake::VariationMistake;
 
@@ -197,4 +199,17 @@ pub struct Model {
     pub quality: Option<Quality>,
     /// Source of the true headings behind the model.
     pub reference_grade: ReferenceGrade,
+    /// Harmonic mean of the horizontal field over the samples, nT; none where unknown.
+    pub mean_h_nt: Option<f64>,
+    /// The needles' part of D and E; none where the correctors are unknown.
+    pub needles: Option<NeedleInduction>,
+}
+
+impl Model {
+    /// Returns the horizontal field at which the ratios contain the needles' part, nT; none
+    /// where unknown.
+    pub fn reference_h_nt(&self) -> Option<f64> {
+        let of_needles = self.needles.map(|needles| needles.reference_h_nt);
+        of_needles.or(self.mean_h_nt)
+    }
 }

@@ -71,6 +71,8 @@ fn smallest_step_nt(ship: &ShipState, earth: EarthField) -> f64 {
         samples_rejected: 0,
         quality: None,
         reference_grade: ReferenceGrade::Heading,
+        mean_h_nt: None,
+        needles: None,
     };
     let errors = (0..HEADINGS).map(|k| {
         let compass_deg = f64::from(k * 360 / HEADINGS);

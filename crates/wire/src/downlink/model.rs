@@ -29,9 +29,13 @@ const SLACK: f64 = 1e-4;
 /// The largest credible residual.
 const RMS_MAX_DEG: f64 = 180.0;
 
-/// Writes the part; `None` when a number is not finite or out of range.
+/// Writes the part; `None` when a number is not finite or out of range, or when the model has
+/// the needles' part of D and E, which this form does not carry.
 pub(super) fn encode(sent: &ModelDownlink) -> Option<Vec<u8>> {
     let model = &sent.model;
+    if model.needles.is_some() {
+        return None;
+    }
     let mut writer = BitWriter::default();
     writer.bytes(sent.id.as_bytes());
     writer.varint(u64::from(sent.version));
@@ -136,6 +140,8 @@ pub(super) fn read(reader: &mut BitReader<'_>) -> Option<ModelDownlink> {
                 0 => ReferenceGrade::Heading,
                 _ => ReferenceGrade::CourseOverGround,
             },
+            mean_h_nt: None,
+            needles: None,
         },
     })
 }

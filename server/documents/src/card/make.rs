@@ -158,7 +158,7 @@ pub(super) fn make(input: CardInput) -> error::Result<Card> {
 
 fn coefficients(ship: &Model, earth: EarthField) -> Result<CardCoefficients, Refusal> {
     Ok(CardCoefficients {
-        exact: Exact::new(&ship.parameters_over_lambda, earth)?.to_degrees(),
+        exact: Exact::new(&ship.parameters_at(earth), earth)?.to_degrees(),
         constant_deg: ship.constant_deg,
         handbook: ship.approximate_coefficients(earth)?,
     })

@@ -5,8 +5,10 @@ use super::findings::Findings;
 use super::interference::store_interference;
 use super::segments::{self, NewSegment};
 use super::track::track;
+use crate::binnacles;
 use crate::event_kinds;
 use crate::models::{self, ModelJson, StoredModel};
+use binnacle_adjustment::corrector::needles_of_model;
 use binnacle_compass::coverage::Coverage;
 use binnacle_compass::result::{Analysis, Epoch, PredictionCoverage, ReferenceCheck, SailNext};
 use binnacle_platform::db::{Db, Tx, execute, row};
@@ -146,13 +148,17 @@ pub async fn save(tx: &mut Tx, found: &AnalysisResult, now: Time) -> Result<Opti
             next.epoch_from >= known.epoch_from && next.replaces_prediction(&known)
         })
     });
-    let Some(model) = next else {
+    let Some(mut model) = next else {
         if withdrawn == withdrawn_before {
             return Ok(None);
         }
         let event = events::insert(tx, found.vessel_id, event_kinds::MODEL, now).await?;
         return Ok(Some(event));
     };
+    // The needles' part of D changes with the horizontal field, and only the correctors tell it.
+    let binnacle = binnacles::current_in(tx, found.vessel_id, found.compass_id).await?;
+    model.model.0.needles =
+        binnacle.and_then(|known| needles_of_model(&known.binnacle.0, &model.model.0));
     models::insert_analysed(tx, &model).await?;
     let event = events::insert(tx, found.vessel_id, event_kinds::MODEL, now).await?;
     Ok(Some(event))

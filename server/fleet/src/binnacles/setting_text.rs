@@ -5,7 +5,7 @@ use binnacle_adjustment::binnacle::{Red, Setting, Shape, Side, Tray};
 /// Describes each corrector and its setting, a line for each possible kind.
 pub fn describe_setting(setting: &Setting, shape: Option<Shape>) -> [(&'static str, String); 5] {
     let pair = match shape {
-        Some(Shape::Sphere) => "Spheres",
+        Some(Shape::Sphere) => "Kelvin spheres",
         Some(Shape::Box) => "Boxes",
         Some(Shape::Plate) => "Plates",
         None => "Quadrantal",
@@ -121,7 +121,7 @@ mod tests {
             (Side::Aft, 0.0, "7 inch at 320 mm", "225 mm aft"),
         ] {
             let words = describe_setting(&setting(side, slew_deg), Some(Shape::Sphere));
-            assert_eq!((words[2].0, words[2].1.as_str()), ("Spheres", pair));
+            assert_eq!((words[2].0, words[2].1.as_str()), ("Kelvin spheres", pair));
             assert_eq!(words[3].1, bar);
         }
     }

@@ -57,6 +57,24 @@ pub async fn current(
     Ok(list(db, vessel, compass, None, 1).await?.pop())
 }
 
+/// Returns the latest revision of a compass's binnacle as a transaction sees it.
+pub async fn current_in(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> DbResult<Option<StoredRevision>> {
+    row!(
+        in tx,
+        StoredRevision,
+        "SELECT revision, at, author_name, reason, binnacle FROM binnacles
+         WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY revision DESC
+         LIMIT 1",
+        vessel,
+        compass
+    )
+}
+
 /// Returns the version of a compass's binnacle as a transaction sees it.
 pub(super) async fn current_version(
     tx: &mut Tx,

@@ -1,19 +1,24 @@
 //! Remarks on a work order, its cancellation and its closing.
 
-use crate::completion::complete::{write_binnacle, write_logbook};
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
+use crate::completion::complete::{PredictedModel, write_binnacle, write_logbook, write_model};
 use crate::work_orders::events::{Cancelled, Closed, OrderEvent, Remark};
+use crate::work_orders::log::canonical_json::sha256_hex;
 use crate::work_orders::order::Order;
+use crate::work_orders::order_state::OrderState;
 use crate::work_orders::order_update::Change;
 use crate::work_orders::state::State;
 use crate::work_orders::{load_order, prepare_update};
 use axum::extract::State as Shared;
+use binnacle_adjustment::adjust::predict_by_compass;
+use binnacle_compass::model::Model;
 use binnacle_platform::access::{PartyWriter, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Problem, Result};
 use binnacle_platform::http::{Id, Json, Valid, text};
 use binnacle_platform::idempotency::Key;
-use binnacle_platform::ids::OrderId;
+use binnacle_platform::ids::{EntryId, ModelId, OrderId};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -56,7 +61,8 @@ pub(super) async fn remark(
 /// Cancel a work order
 ///
 /// For the operator; a firm declines instead. Correctors that were moved keep their settings: the
-/// next revision of the binnacle and an entry in the logbook record them.
+/// next revision of the binnacle and an entry in the logbook record them, and a predicted model
+/// lets the vessel be planned again.
 #[utoipa::path(post, path = "/work-orders/{id}/cancel", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = RemarkForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -64,6 +70,7 @@ pub(super) async fn remark(
               (status = 409, body = Problem), (status = 422, body = Problem)))]
 pub(super) async fn cancel_work_order(
     Shared(app): Shared<App>,
+    Shared(slots): Shared<CorrectorPlanSlots>,
     request: RequestContext,
     writer: Writer,
     Id(id): Id<OrderId>,
@@ -79,8 +86,11 @@ pub(super) async fn cancel_work_order(
     if !stored.summary.state.is_under_way() {
         stored.require_state(&[], "it can no longer be cancelled")?;
     }
+    let left = predict_left(&slots, &stored.state()).await?;
     if let Some(mut change) = update.begin(&stored).await? {
-        record_moved_correctors(&mut change).await?;
+        if let Some(left) = left {
+            record_moved_correctors(&mut change, left).await?;
+        }
         change
             .append(OrderEvent::Cancelled(Cancelled { text: reason }))
             .await?;
@@ -89,12 +99,23 @@ pub(super) async fn cancel_work_order(
     load_order(&app, writer.operator, id).await
 }
 
-/// Records correctors that were moved although the order is cancelled.
-async fn record_moved_correctors(change: &mut Change<'_>) -> Result<()> {
-    let state = change.stored.state();
+/// Predicts the model of a compass whose correctors were moved; `None` where none was.
+async fn predict_left(slots: &CorrectorPlanSlots, state: &OrderState) -> Result<Option<Model>> {
     if !state.has_moved_correctors() {
-        return Ok(());
+        return Ok(None);
     }
+    if let Some(prediction) = state.confirmed_prediction() {
+        return Ok(Some(prediction.model_after.clone()));
+    }
+    let (plan_request, steps) = (state.plan_request()?, state.steps.clone());
+    let predicted = slots.run(move || predict_by_compass(&plan_request.adjustment(), &steps));
+    Ok(Some(predicted.await?.model_after))
+}
+
+/// Records correctors that were moved although the order is cancelled, and the model of the
+/// compass that they leave.
+async fn record_moved_correctors(change: &mut Change<'_>, model: Model) -> Result<()> {
+    let state = change.stored.state();
     let (Some(binnacle), Some(setting)) = (&state.binnacle, state.setting()) else {
         return Ok(());
     };
@@ -102,8 +123,16 @@ async fn record_moved_correctors(change: &mut Change<'_>) -> Result<()> {
         .with_setting(setting.clone())
         .map_err(binnacle_fleet::binnacles::invalid_binnacle)?;
     write_binnacle(change, &left, "left").await?;
-    let (now, port) = (change.now, change.stored.summary.port.clone());
-    write_logbook(change, binnacle_platform::ids::EntryId::new(), now, &port).await
+    let now = change.now;
+    let predicted = PredictedModel {
+        id: ModelId::new(),
+        at: now,
+        input_hash: sha256_hex(&serde_json::to_vec(&model)?),
+        model,
+    };
+    write_model(change, &state, predicted).await?;
+    let port = change.stored.summary.port.clone();
+    write_logbook(change, EntryId::new(), now, &port).await
 }
 
 /// Request to close an order.

@@ -1,6 +1,7 @@
 //! Routes of work orders: creating, reading, cancelling and closing them.
 
 mod actions;
+mod as_found;
 mod create;
 
 pub use create::{cancel_declined, write};
@@ -55,6 +56,7 @@ where
         .routes(routes!(actions::remark))
         .routes(routes!(actions::cancel_work_order))
         .routes(routes!(actions::close_work_order))
+        .routes(routes!(as_found::report_as_found))
         .merge(berth_api::router())
         .merge(second_reading_api::router())
         .merge(offer_api::router())

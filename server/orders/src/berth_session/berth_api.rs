@@ -1,5 +1,6 @@
 //! Handlers of the berth session: reading, plan, steps and corrector settings.
 
+use crate::berth_session::as_found::require_as_found;
 use crate::berth_session::berth_reading::{check, check_reading_ranges};
 use crate::berth_session::plan::{
     PlanChoice, offer_plans, refuse_magnetic_cargo, require_current_reading,
@@ -35,7 +36,7 @@ use uuid::Uuid;
 
 /// States in which a berth session may take place. An order without a firm may be measured as
 /// soon as it is planned.
-const BERTH_STATES: [State; 4] = [
+pub(crate) const BERTH_STATES: [State; 4] = [
     State::Planned,
     State::OnBoard,
     State::Measured,
@@ -169,7 +170,7 @@ fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
     params(("id" = OrderId, Path)),
     responses((status = 200, body = Outcome), (status = 401, body = Problem),
               (status = 404, body = Problem),
-              (status = 409, description = "There is no reading to plan from", body = Problem),
+              (status = 409, description = "There is no reading to plan from, or the correctors are not confirmed as found", body = Problem),
               (status = 422, description = "There is no plan; the refusals name the cures", body = Problem)))]
 async fn find_plan(
     Shared(app): Shared<App>,
@@ -179,7 +180,9 @@ async fn find_plan(
 ) -> Result<Json<Outcome>> {
     let stored = store::find(&app.db, reader.tenant, id).await?;
     stored.require_state(&BERTH_STATES, "there is nothing to plan")?;
-    let plan_request = stored.state().plan_request()?;
+    let state = stored.state();
+    let plan_request = state.plan_request()?;
+    require_as_found(&state)?;
     require_current_reading(&app, &stored.summary, &plan_request).await?;
     Ok(Json(
         offer_plans(&app, &slots, &stored.summary, plan_request).await?,
@@ -191,7 +194,7 @@ async fn find_plan(
     params(("id" = OrderId, Path), Key), request_body = PlanChoice,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "There is no reading to plan from", body = Problem),
+              (status = 409, description = "There is no reading to plan from, or the correctors are not confirmed as found", body = Problem),
               (status = 422, description = "There is no plan; the refusals name the cures", body = Problem)))]
 async fn choose_plan(
     Shared(app): Shared<App>,
@@ -208,7 +211,9 @@ async fn choose_plan(
         return load_order(&app, writer.tenant, id).await;
     }
     stored.require_state(&BERTH_STATES, "there is nothing to plan")?;
-    let plan_request = stored.state().plan_request()?;
+    let state = stored.state();
+    let plan_request = state.plan_request()?;
+    require_as_found(&state)?;
     require_current_reading(&app, &stored.summary, &plan_request).await?;
     let outcome = offer_plans(&app, &slots, &stored.summary, plan_request).await?;
     let offered = outcome.plans.len();

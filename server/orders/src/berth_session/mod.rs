@@ -1,5 +1,6 @@
 //! The adjuster's session at the berth: readings, plans, steps and photographs.
 
+mod as_found;
 pub(crate) mod berth_api;
 pub(crate) mod berth_reading;
 pub(crate) mod firm_vessel_view;

@@ -42,8 +42,12 @@ impl OrderState {
             .given
             .reading(basis.variation()?)
             .map_err(|error| anyhow::anyhow!("a reading that was taken: {error}"))?;
+        let shifted = read.given.shifted_reading(basis.variation()?);
+        let shifted =
+            shifted.map_err(|error| anyhow::anyhow!("a reading that was taken: {error}"))?;
         Ok(PlanRequest {
             reading,
+            shifted,
             given: read.given.clone(),
             binnacle: self.binnacle.clone().ok_or_else(wrong)?,
             moved_to: self.moved_to.clone(),

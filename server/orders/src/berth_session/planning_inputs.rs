@@ -1,6 +1,8 @@
 //! Inputs of a plan: model, field, binnacle and waters at the time of the reading.
 
 use crate::berth_session::previous_lambda;
+use crate::work_orders::events::OrderEvent;
+use crate::work_orders::log::entry::Entry;
 use crate::work_orders::payload::plan_basis::{Basis, ModelUsed};
 use crate::work_orders::state::State;
 use crate::work_orders::store;
@@ -19,7 +21,7 @@ use binnacle_fleet::models::{self, StoredModel};
 use binnacle_platform::app::App;
 use binnacle_platform::db::row;
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_platform::ids::{CompassId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use serde::Deserialize;
 use serde_json::Value;
@@ -31,6 +33,8 @@ pub(crate) struct PlanRequest {
     pub basis: Basis,
     /// Reading, as the planner takes it.
     pub reading: BerthReading,
+    /// Reading on another heading of the berth, if it was sent.
+    pub shifted: Option<BerthReading>,
     /// Reading, as it was sent.
     pub given: ReadingForm,
     /// Binnacle, with the strengths found so far.
@@ -127,6 +131,7 @@ impl PlanRequest {
                 cargo_on_board: self.basis.cargo_on_board,
                 earlier_lambda: earlier.and_then(|earlier| earlier.set_as(&self.binnacle)),
                 is_updated_here: self.basis.is_updated_here,
+                shifted: self.shifted,
             },
             limits: self.limits,
         }
@@ -150,13 +155,31 @@ async fn headings_until(app: &App, vessel: VesselId, model: &StoredModel) -> Res
         return Ok(None);
     }
     let Some(record) = store::find_record(&app.db, vessel, order).await? else {
-        return Ok(None);
+        return headings_of_cancelled(app, vessel, order).await;
     };
     let record: Value = serde_json::from_str(&record)?;
     let data = &record["data"];
     let until = [&data["headings_until"], &data["until"]];
     let until = until.into_iter().find(|until| !until.is_null());
     Ok(until.map(Time::deserialize).transpose()?)
+}
+
+/// Time of the last heading behind the model that a cancelled order left: that of its reading.
+async fn headings_of_cancelled(
+    app: &App,
+    vessel: VesselId,
+    order: OrderId,
+) -> Result<Option<Time>> {
+    let mut until = None;
+    for line in store::list_lines(&app.db, vessel, order, None, i64::MAX).await? {
+        let entry: Entry = serde_json::from_str(&line.line)?;
+        if let OrderEvent::BerthReading(read) = &entry.content
+            && let Some(basis) = &read.basis
+        {
+            until = Some(basis.model.headings_until.unwrap_or(basis.model.data_until));
+        }
+    }
+    Ok(until)
 }
 
 /// Cells of the horizontal and the vertical field, nT: within one a compass behaves alike.

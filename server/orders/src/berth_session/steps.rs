@@ -123,6 +123,23 @@ pub(crate) fn judge(
             None,
             Some(outcome),
         ),
+        StepCheck::FoundOtherwise {
+            turned_deg,
+            binnacle,
+            setting,
+            outcome,
+        } => (
+            result(
+                StepVerdict::FoundOtherwise,
+                format!(
+                    "the compass turned by {turned_deg:.1} degrees: before this step the magnets \
+                     stood with the other end than recorded"
+                ),
+            ),
+            Some(setting),
+            Some(*binnacle),
+            Some(outcome),
+        ),
         StepCheck::OtherStrength {
             share,
             other_hole,

@@ -14,6 +14,7 @@ use crate::work_orders::payload::signed_record::Completion;
 use crate::work_orders::store;
 use binnacle_adjustment::adjust::UpdatedPrediction;
 use binnacle_adjustment::binnacle::Setting;
+use binnacle_compass::model::Model;
 use binnacle_fleet::binnacles;
 use binnacle_fleet::event_kinds;
 use binnacle_fleet::logbook;
@@ -59,10 +60,7 @@ pub(crate) async fn complete(
 ) -> Result<()> {
     let state = change.stored.state();
     let setting = require_planned_setting(&state)?.clone();
-    let (Some(basis), Some(binnacle)) = (
-        state.reading.as_ref().and_then(|read| read.basis.as_ref()),
-        state.binnacle.as_ref(),
-    ) else {
+    let Some(binnacle) = state.binnacle.as_ref() else {
         return Err(Error::WrongState("there is no plan".to_owned()));
     };
     let after = binnacle
@@ -79,10 +77,6 @@ pub(crate) async fn complete(
         &after,
         &key.public_key(),
     )?;
-    let (vessel, compass) = (
-        change.stored.summary.vessel_id,
-        change.stored.summary.compass_id,
-    );
     let completed = Completion {
         at,
         adjuster_name: sign_off.adjuster_name.clone(),
@@ -98,39 +92,13 @@ pub(crate) async fn complete(
     change.stored.summary.adjuster_licence = Some(sign_off.adjuster_licence);
     change.stored.summary.firm = sign_off.firm;
     change.stored.summary.completed_at = Some(at);
-    let read_at = state
-        .reading
-        .as_ref()
-        .map_or(at, |read| Time(read.given.at));
-    let place = state
-        .reading
-        .as_ref()
-        .map(|read| (read.given.lat, read.given.lon));
-    let (lat, lon) = place.unwrap_or_default();
-    let model = StoredModel {
-        vessel_id: vessel,
+    let predicted = PredictedModel {
         id: completed.model_id,
-        compass_id: compass,
-        version: 0,
-        created_at: change.now,
+        at,
         input_hash: completed.record_sha256.clone(),
-        estimator: PREDICTED_BY_PLAN.to_owned(),
-        epoch_from: Some(at),
-        epoch_to: None,
-        epoch_begun_by: Some("adjustment".to_owned()),
-        data_from: read_at,
-        data_until: at,
-        place_at: at,
-        lat,
-        lon,
-        variation_deg: basis.variation_deg,
-        h_nt: basis.h_nt,
-        z_nt: basis.z_nt,
-        model: ModelJson(completed.model_after.clone()),
-        sent_at: None,
-        foretold_by: Some(change.stored.summary.id),
+        model: completed.model_after.clone(),
     };
-    models::insert(&mut change.tx, &model).await?;
+    write_model(change, &state, predicted).await?;
     write_binnacle(change, &after, "adjusted").await?;
     let port = change.stored.summary.port.clone();
     write_logbook(change, completed.logbook_entry, at, &port).await?;
@@ -139,8 +107,59 @@ pub(crate) async fn complete(
     change
         .append(OrderEvent::Completion(Box::new(completed)))
         .await?;
-    change.add_live_event(event_kinds::MODEL).await?;
     change.add_live_event(event_kinds::LOGBOOK).await
+}
+
+/// Model of the compass as an order leaves it.
+pub(crate) struct PredictedModel {
+    /// Id of the model.
+    pub(crate) id: ModelId,
+    /// Time from which it holds.
+    pub(crate) at: Time,
+    /// SHA-256 of everything that it was made from.
+    pub(crate) input_hash: String,
+    /// The model.
+    pub(crate) model: Model,
+}
+
+/// Writes the model of the compass as the order leaves it, for the place of the reading.
+///
+/// # Errors
+/// [`Error::WrongState`] before the berth was read.
+pub(crate) async fn write_model(
+    change: &mut Change<'_>,
+    state: &OrderState,
+    predicted: PredictedModel,
+) -> Result<()> {
+    let read = state.reading.as_ref();
+    let Some((read, basis)) = read.and_then(|read| Some((read, read.basis.as_ref()?))) else {
+        return Err(Error::WrongState("there is no plan".to_owned()));
+    };
+    let model = StoredModel {
+        vessel_id: change.stored.summary.vessel_id,
+        id: predicted.id,
+        compass_id: change.stored.summary.compass_id,
+        version: 0,
+        created_at: change.now,
+        input_hash: predicted.input_hash,
+        estimator: PREDICTED_BY_PLAN.to_owned(),
+        epoch_from: Some(predicted.at),
+        epoch_to: None,
+        epoch_begun_by: Some("adjustment".to_owned()),
+        data_from: Time(read.given.at),
+        data_until: predicted.at,
+        place_at: predicted.at,
+        lat: read.given.lat,
+        lon: read.given.lon,
+        variation_deg: basis.variation_deg,
+        h_nt: basis.h_nt,
+        z_nt: basis.z_nt,
+        model: ModelJson(predicted.model),
+        sent_at: None,
+        foretold_by: Some(change.stored.summary.id),
+    };
+    models::insert(&mut change.tx, &model).await?;
+    change.add_live_event(event_kinds::MODEL).await
 }
 
 /// Writes the present settings as a revision of the binnacle.

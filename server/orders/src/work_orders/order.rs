@@ -2,6 +2,7 @@
 
 use crate::work_orders::offers::Offer;
 use crate::work_orders::order_state::OrderState;
+use crate::work_orders::payload::as_found::AsFound;
 use crate::work_orders::payload::chosen_plan::ChosenPlan;
 use crate::work_orders::payload::photograph::Photo;
 use crate::work_orders::payload::port_call::CallChange;
@@ -41,6 +42,10 @@ pub(crate) struct Order {
     pub standing: &'static str,
     /// Limits on plans.
     pub limits: Limits,
+    /// Correctors and compass as found; `null` before they were reported. Nothing is planned
+    /// before.
+    #[schema(required)]
+    pub as_found: Option<AsFound>,
     /// Last accepted reading of the magnetometer.
     #[schema(required)]
     pub reading: Option<ReadingForm>,
@@ -133,6 +138,7 @@ impl Order {
             fee_eur: state.offers.holder().and_then(Offer::fee),
             call_change: state.call_change,
             limits: state.limits,
+            as_found: state.as_found,
             next_step,
             setting,
             steps_done: state.steps_done,

@@ -4,6 +4,7 @@
 //! again.
 
 use crate::work_orders::offers::Offers;
+use crate::work_orders::payload::as_found::AsFound;
 use crate::work_orders::payload::chosen_plan::ChosenPlan;
 use crate::work_orders::payload::hours::Hours;
 use crate::work_orders::payload::photograph::Photo;
@@ -36,6 +37,8 @@ pub(crate) struct OrderState {
     pub port: Option<String>,
     /// Limits on plans.
     pub limits: Limits,
+    /// Correctors and compass as found.
+    pub as_found: Option<AsFound>,
     /// Last reading at the berth that was accepted.
     pub reading: Option<RecordedReading>,
     /// Binnacle with the strengths found so far, its correctors set as at the reading.

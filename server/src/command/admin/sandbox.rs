@@ -53,6 +53,8 @@ pub struct Sandbox {
     pub vessel_id: VesselId,
     /// Order that is offered to the firm.
     pub order_id: String,
+    /// Report of the correctors as found, to send before the plan.
+    pub as_found: Value,
     /// Reading to send at the berth.
     pub berth_reading: Value,
 }
@@ -116,6 +118,13 @@ pub async fn create_sandbox(app: &App, name: &str) -> Result<Sandbox> {
             .as_str()
             .context("an order has an id")?
             .to_owned(),
+        as_found: json!({
+            "setting": binnacle()?["setting"],
+            "dockside": {
+                "bubble": "sound", "pivot": "sound", "gimbals": "sound", "lubber_line": "sound",
+                "spheres_turned_deg": null,
+            },
+        }),
         berth_reading: berth_reading(&model, now)?,
     })
 }

@@ -1,5 +1,6 @@
 //! Work orders from the berth reading to the verification at sea.
 
+mod as_found;
 mod card;
 mod evidence;
 mod invalid_requests;

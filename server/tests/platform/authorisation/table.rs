@@ -241,6 +241,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("POST /work-orders", FLEET_WRITES),
     ("GET /work-orders/{id}", PARTY_READS),
     ("POST /work-orders/{id}/accept", PARTY_WRITES),
+    ("POST /work-orders/{id}/as-found", PARTY_WRITES),
     ("POST /work-orders/{id}/berth-reading", PARTY_WRITES),
     ("GET /work-orders/{id}/binnacle", PARTY_READS),
     ("POST /work-orders/{id}/cancel", FLEET_WRITES),

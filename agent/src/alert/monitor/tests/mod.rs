@@ -37,6 +37,8 @@ fn model(version: u32) -> ModelDownlink {
             samples_rejected: 0,
             quality: None,
             reference_grade: ReferenceGrade::Heading,
+            mean_h_nt: None,
+            needles: None,
         },
     }
 }

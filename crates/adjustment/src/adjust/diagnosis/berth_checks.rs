@@ -5,6 +5,7 @@ use super::misreadings::find_misreadings;
 use super::refusal::Refusal;
 use super::vertical_check::{VerticalCheck, find_swapped_axes};
 use crate::adjust::inputs::{AdjustError, Adjustment, Unit};
+use crate::adjust::needle_part::without_needles;
 use crate::berth::BerthError;
 
 impl Adjustment<'_> {
@@ -59,7 +60,8 @@ pub(crate) fn refuse_berth(
 ) -> Result<Refusal, AdjustError> {
     let reading = adjustment.reading;
     let misreadings = || {
-        let (model, earth) = (adjustment.model, adjustment.earth);
+        let earth = adjustment.earth;
+        let model = &without_needles(adjustment.model, adjustment.binnacle, earth);
         let mut found = find_misreadings(
             model,
             earth,

@@ -56,6 +56,9 @@ impl Refusal {
             }
             Refusal::CardDisagrees(_) => vec![Cure::ReadAgain],
             Refusal::FieldTooWeak { .. } => vec![Cure::AnotherBerth],
+            Refusal::ForeignField { .. } => {
+                vec![Cure::AnotherBerth, Cure::ReadAgain, Cure::HeadingsAtSea]
+            }
             Refusal::AmbiguousHeadings { .. } => vec![Cure::Swing],
             Refusal::OtherLambda { .. } => {
                 vec![Cure::ReadAgain, Cure::HeadingsAtSea, Cure::Swing]

@@ -6,7 +6,8 @@ use super::misreadings::{Misreading, find_misreadings};
 use super::refusal::Refusal;
 use super::vertical_check::{VerticalCheck, find_swapped_axes};
 use crate::adjust::inputs::{BerthForm, FormError, ReadingForm};
-use crate::berth::{BerthEstimate, BerthReading, lambda_at_berth};
+use crate::adjust::needle_part::{lambda_without_needles, without_needles};
+use crate::berth::{BerthEstimate, BerthReading};
 use crate::binnacle::Binnacle;
 use binnacle_compass::angle::Variation;
 use binnacle_compass::model::Model;
@@ -30,7 +31,9 @@ impl ReadingForm {
             return Err(Box::new(Refusal::FieldTooWeak { h_nt }.with_cures()));
         }
         let found = self.reading(variation).and_then(|reading| {
-            let estimate = lambda_at_berth(model, earth, &reading)?;
+            let h_nt = model.reference_h_nt().unwrap_or(earth.h_nt);
+            let estimate = lambda_without_needles(model, binnacle, h_nt, earth, &reading)?;
+            self.shifted_reading(variation)?;
             Ok((reading, estimate))
         });
         let (reading, estimate) = found.map_err(|error| {
@@ -63,6 +66,7 @@ impl ReadingForm {
         };
         let (field_nt, unit) = (self.field_nt(), self.unit);
         let (errors, alignment) = (self.errors(), self.alignment());
+        let model = &without_needles(model, binnacle, earth);
         let mut found = find_misreadings(model, earth, magnetic, field_nt, unit, errors, alignment);
         let reading = BerthReading::new(magnetic, field_nt, errors, alignment);
         if let (Ok(reading), Some(vertical)) = (reading, self.vertical()) {

@@ -58,6 +58,9 @@ pub struct Circumstances {
     pub cargo_on_board: bool,
     /// λ of an earlier berth of the same compass.
     pub earlier_lambda: Option<EarlierLambda>,
+    /// Reading after the vessel was shifted to another heading of this berth, with the same
+    /// correctors.
+    pub shifted: Option<BerthReading>,
     /// Model updated by a reading at this berth: its covariance then includes possible
     /// changes of the ship before the berth.
     pub is_updated_here: bool,

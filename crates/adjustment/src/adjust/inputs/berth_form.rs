@@ -165,7 +165,7 @@ impl BerthForm {
             .check_ranges()
             .map_err(|error| FormError::new(format!("limits.{}", error.field), error.what))?;
         let (earth, variation) = self.field()?;
-        let reading = given.reading(variation).map_err(|error| match &error {
+        let impossible = |error: BerthError| match &error {
             BerthError::Reading {
                 name,
                 value,
@@ -179,7 +179,11 @@ impl BerthForm {
                 ),
             ),
             _ => FormError::new("reading.forward, reading.starboard", error.to_string()),
-        })?;
+        };
+        let reading = given.reading(variation).map_err(impossible)?;
+        let shifted = given.shifted_reading(variation);
+        let shifted =
+            shifted.map_err(|error| FormError::new("reading.shifted", error.to_string()))?;
         let age = self
             .model_until
             .map(|until| given.at.seconds_since(until) / 86_400.0);
@@ -196,6 +200,7 @@ impl BerthForm {
             circumstances: Circumstances {
                 model_age_days: age,
                 cargo_on_board: given.cargo_on_board,
+                shifted,
                 ..Circumstances::default()
             },
             limits: self.limits,

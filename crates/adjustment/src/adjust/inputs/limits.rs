@@ -25,7 +25,8 @@ pub struct Limits {
     /// Greatest age of the model, days; 60 by default.
     #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 90))]
     pub model_age_days: f64,
-    /// Greatest relative standard error of λ for moving soft iron; 0.03 by default.
+    /// Relative standard error of λ above which the magnetometer is named as too poor where
+    /// spheres would have to move; 0.03 by default.
     #[cfg_attr(feature = "openapi", schema(minimum = 0.005, maximum = 0.1))]
     pub lambda_sd: f64,
 }

@@ -19,7 +19,7 @@ pub use berth_form::{Berth, BerthForm, FieldForm, FormError, PostCheckForm, Wate
 pub use error::AdjustError;
 pub use limits::Limits;
 pub use number_error::NumberError;
-pub use reading_form::{HeadingFrom, Magnetometer, ReadingForm};
+pub use reading_form::{HeadingFrom, Magnetometer, ReadingForm, ShiftedReading};
 pub use second_reading_form::SecondReadingForm;
 pub use unit::Unit;
 pub(crate) use validation::validate;

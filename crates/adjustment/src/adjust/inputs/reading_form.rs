@@ -8,7 +8,7 @@ use super::number_error::NumberError;
 use super::unit::Unit;
 use super::vertical_reading::VerticalReading;
 use crate::berth::{Alignment, BerthError, BerthReading, ReadingErrors};
-use binnacle_compass::angle::{MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::angle::{MagneticHeading, TrueHeading, Variation, wrap_180};
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
@@ -93,7 +93,30 @@ pub struct ReadingForm {
     /// Magnetic cargo on board that the model does not include.
     #[serde(default)]
     pub cargo_on_board: bool,
+    /// Reading after the vessel was shifted to another heading of this berth, before anything
+    /// was moved: it separates steel on the quay from λ.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shifted: Option<ShiftedReading>,
 }
+
+/// Reading on another heading of the berth by the same magnetometer in the same unit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ShiftedReading {
+    /// True heading of the vessel from the same source, degrees; at least 30 degrees from
+    /// the first.
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 360))]
+    pub heading_true_deg: f64,
+    /// Horizontal field at the card's centre, bowl out, forward positive.
+    pub forward: f64,
+    /// Horizontal field there, starboard positive.
+    pub starboard: f64,
+}
+
+/// Least difference of two headings of a berth, degrees: with less, hardly anything of λ is
+/// separated from the quay's steel.
+const LEAST_SHIFT_DEG: f64 = 30.0;
 
 /// Source of a heading at the berth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -195,7 +218,53 @@ impl ReadingForm {
                 });
             }
         }
+        self.check_shifted()
+    }
+
+    fn check_shifted(&self) -> Result<(), NumberError> {
+        let Some(shifted) = &self.shifted else {
+            return Ok(());
+        };
+        let degrees = shifted.heading_true_deg;
+        if !(0.0..=360.0).contains(&degrees) {
+            return Err(NumberError {
+                field: "shifted",
+                what: format!("heading_true_deg {degrees} is not between 0 and 360"),
+            });
+        }
+        let apart_deg = wrap_180(degrees - self.heading_true_deg).abs();
+        if apart_deg < LEAST_SHIFT_DEG {
+            return Err(NumberError {
+                field: "shifted",
+                what: format!(
+                    "heading_true_deg {degrees} is only {apart_deg:.0} degrees from the first \
+                     heading: at least {LEAST_SHIFT_DEG} are needed"
+                ),
+            });
+        }
         Ok(())
+    }
+
+    /// Converts the reading on the other heading, if there is one.
+    ///
+    /// # Errors
+    /// Fails when no ship has such a field.
+    pub fn shifted_reading(
+        &self,
+        variation: Variation,
+    ) -> Result<Option<BerthReading>, BerthError> {
+        let Some(shifted) = &self.shifted else {
+            return Ok(None);
+        };
+        let other = ReadingForm {
+            heading_true_deg: shifted.heading_true_deg,
+            forward: shifted.forward,
+            starboard: shifted.starboard,
+            down: None,
+            shifted: None,
+            ..self.clone()
+        };
+        other.reading(variation).map(Some)
     }
 
     /// Returns the relative standard deviation of the magnetometer's scale.

@@ -56,6 +56,7 @@ impl SecondReadingForm {
             down: self.down,
             unit: self.unit,
             compass_deg: self.compass_deg,
+            shifted: None,
             ..first.clone()
         };
         reading.check_ranges()?;

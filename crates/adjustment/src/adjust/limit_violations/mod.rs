@@ -31,8 +31,8 @@ pub(crate) fn find_violations(
         _ => false,
     };
     let mut refusals = match found {
-        Some(too_large @ Refusal::ResidualTooLarge { .. }) => {
-            spheres::explain_large_residual(adjustment, state, after, too_large)
+        Some(violation @ (Refusal::ResidualTooLarge { .. } | Refusal::BandTooWide { .. })) => {
+            spheres::explain_by_lambda(adjustment, state, after, violation)
         }
         found => found.into_iter().collect(),
     };
@@ -86,7 +86,7 @@ fn dominant_coefficient(model: &Model, table: &PredictedTable) -> Coefficient {
         h_nt: table.h_nt,
         z_nt: table.z_nt,
     };
-    let Ok(found) = Coefficients::new(&model.parameters_over_lambda, earth) else {
+    let Ok(found) = Coefficients::new(&model.parameters_at(earth), earth) else {
         return Coefficient::A;
     };
     let a = found.a + model.constant_deg.to_radians();

@@ -3,9 +3,11 @@
 mod berth_check;
 mod notes;
 mod outcome;
+mod second_heading;
 
 pub use berth_check::{BerthCheck, HeadingVisibility};
 pub use outcome::{Outcome, Plan};
+pub use second_heading::SecondHeading;
 
 use super::diagnosis::{CardCheck, Refusal, check_preconditions, refuse_berth};
 use super::heeling;
@@ -40,6 +42,7 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
             .map(Refusal::CardDisagrees),
     );
     refusals.extend(state.drift.refusal());
+    refusals.extend(foreign_field(&state));
     let vertical = adjustment.vertical_check();
     refusals.extend(vertical.and_then(|vertical| vertical.refusal()));
     if !refusals.is_empty() {
@@ -67,12 +70,26 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
             ..refused_outcome(Some(berth), refusals)
         });
     }
+    let second_heading = SecondHeading::advise(adjustment, &state, &plans[0].setting)?;
+    let mut notes = notes::notes(adjustment, &state, &berth, &plans, &front.optimality);
+    notes.extend(second_heading.map(|advice| advice.to_string()));
     Ok(Outcome {
-        notes: notes::notes(adjustment, &state, &berth, &plans, &front.optimality),
+        second_heading,
+        notes,
         berth: Some(berth),
         refusals: Vec::new(),
         plans,
         optimality: Some(front.optimality),
+    })
+}
+
+/// Refuses readings on two headings that the model and the errors do not explain.
+fn foreign_field(state: &MagneticState<'_>) -> Option<Refusal> {
+    let two = state.two_headings?;
+    let [north, east] = two.quay_nt;
+    (two.is_quay_seen || two.is_unexplained).then(|| Refusal::ForeignField {
+        quay_nt: north.hypot(east),
+        unexplained: two.is_unexplained,
     })
 }
 
@@ -83,6 +100,7 @@ fn refused_outcome(berth: Option<BerthCheck>, refusals: Vec<Refusal>) -> Outcome
         notes: Vec::new(),
         plans: Vec::new(),
         optimality: None,
+        second_heading: None,
     }
 }
 
@@ -96,8 +114,8 @@ fn choose_plans(front: &ParetoFront, near_equal_deg: f64) -> Vec<&BestSetting> {
     let Some(best) = found.last() else {
         return Vec::new();
     };
-    let good_enough = best.worst_deg + near_equal_deg;
-    let first = found.iter().position(|f| f.worst_deg <= good_enough);
+    let good_enough = best.reach_deg + near_equal_deg;
+    let first = found.iter().position(|f| f.reach_deg <= good_enough);
     let first = first.unwrap_or(found.len() - 1);
     let mut order = vec![found[first]];
     order.extend(found[first + 1..].iter().rev().take(1));
@@ -116,7 +134,7 @@ fn complete_plan(
     let widest = after.iter().filter_map(|table| table.widest_band_deg);
     Ok(Plan {
         moves: found.moves,
-        worst_residual_deg: found.worst_deg,
+        worst_residual_deg: prediction::weighted_worst_deg(adjustment.waters, &after),
         widest_band_deg: widest.fold(0.0, f64::max),
         lambda: state.lambda_with(&found.setting),
         before: tables(&adjustment.binnacle.setting)?,

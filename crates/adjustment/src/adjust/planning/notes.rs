@@ -4,6 +4,7 @@ use super::berth_check::BerthCheck;
 use super::outcome::Plan;
 use crate::adjust::diagnosis::{friction_deg, undetectable_misreadings};
 use crate::adjust::inputs::Adjustment;
+use crate::adjust::needle_part::without_needles;
 use crate::adjust::search::Optimality;
 use crate::adjust::state::MagneticState;
 use binnacle_compass::ship::CAUTION_H_NT;
@@ -20,7 +21,8 @@ pub(crate) fn notes(
     notes.extend(berth.notes());
     let detectable_turn_deg = berth.consistency.detectable_turn_deg();
     notes.extend(state.drift.notes(detectable_turn_deg));
-    let unseen = undetectable_misreadings(adjustment.model, adjustment.earth, adjustment.reading);
+    let model = without_needles(adjustment.model, adjustment.binnacle, adjustment.earth);
+    let unseen = undetectable_misreadings(&model, adjustment.earth, adjustment.reading);
     notes.extend(unseen.iter().map(|misreading| {
         format!(
             "this heading cannot show whether {misreading}: the reading fits either way, and \
@@ -45,12 +47,7 @@ pub(crate) fn notes(
     }
     let card = adjustment.card().filter(|card| !card.agrees());
     notes.extend(card.map(|card| card.to_string()));
-    if !state.may_move_pair && adjustment.binnacle.design.quadrantal.is_some() {
-        notes.push(format!(
-            "spheres are left as found: lambda is uncertain by {:.1} per cent",
-            100.0 * state.lambda_sd_share()
-        ));
-    }
+    notes.extend(spheres_left(adjustment, state, plans));
     if !state.may_move_bar && adjustment.binnacle.design.flinders.is_some() {
         notes.push(
             "the Flinders bar is left as found: the model does not separate chi13 from bx"
@@ -71,6 +68,25 @@ pub(crate) fn notes(
     notes.extend(heeling_left(plans));
     notes.extend(left_out(optimality));
     notes
+}
+
+/// Describes Kelvin spheres that are not moved where λ is uncertain.
+fn spheres_left(
+    adjustment: &Adjustment<'_>,
+    state: &MagneticState<'_>,
+    plans: &[Plan],
+) -> Option<String> {
+    adjustment.binnacle.design.quadrantal.as_ref()?;
+    let setting = &plans.first()?.setting;
+    let lambda_sd = state.lambda_sd_share();
+    let left = setting.quadrantal == adjustment.standing().quadrantal;
+    (left && lambda_sd > adjustment.limits.lambda_sd).then(|| {
+        format!(
+            "the Kelvin spheres are left as found: lambda is uncertain by {:.1} per cent, and \
+             moving them would widen the band by more than it would gain",
+            100.0 * lambda_sd
+        )
+    })
 }
 
 /// Describes possible improvements after an incomplete search.

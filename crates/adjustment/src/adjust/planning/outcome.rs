@@ -1,6 +1,7 @@
 //! Result of planning.
 
 use super::berth_check::BerthCheck;
+use super::second_heading::SecondHeading;
 use crate::adjust::diagnosis::{Refusal, Refused};
 use crate::adjust::heeling::HeelingPlan;
 use crate::adjust::inputs::{Limits, Water};
@@ -29,6 +30,9 @@ pub struct Outcome {
     pub plans: Vec<Plan>,
     /// Optimality of the search.
     pub optimality: Option<Optimality>,
+    /// Advice to read the field on another heading, where that would be worth it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second_heading: Option<SecondHeading>,
 }
 
 /// A possible setting of the correctors.

@@ -1,5 +1,6 @@
-//! Hypotheses about the actual setting: slips of the hand in a step, magnets of another
-//! moment, and any other difference from the plan.
+//! Hypotheses about the actual setting: slips of the hand in a step, magnets that stood
+//! otherwise than recorded, magnets of another moment, and any other difference from the
+//! plan.
 //!
 //! Invariants: each hypothesis has a prior probability. The compass's turn at its step, if
 //! read, and the later magnetometer reading raise or lower it. A place with a later
@@ -7,6 +8,7 @@
 
 use super::innovation::{FieldVector, Innovation, MODEL_SIZE, ModelVector, Perturbation};
 use super::result::{CompletedStep, Slip};
+use crate::adjust::as_found::FoundOtherwise;
 use crate::adjust::inputs::Adjustment;
 use crate::adjust::instructions::{
     Corrector, Place, compass_turn, moved, replaced, reversed, stands,
@@ -24,6 +26,9 @@ const WRONG_END: f64 = 0.01;
 const HOLES_OFF: [f64; 3] = [0.004, 0.002, 0.002];
 /// Prior probability of a step that was not done.
 const NOT_DONE: f64 = 0.004;
+/// Prior probability of magnets that stood with the other end than recorded, after someone
+/// confirmed the record.
+const FOUND_OTHERWISE: f64 = 0.01;
 /// Prior probability of another moment of all magnets of a kind.
 const OTHER_MOMENT: f64 = 0.2;
 /// Standard deviation of that moment, as a share of it.
@@ -49,10 +54,22 @@ pub(crate) enum HypothesisKind {
     AsPlanned,
     /// Another setting in a step, with the resulting setting.
     Step(u32, Slip, Setting),
+    /// Magnets of a step that stood with the other end at the first reading than recorded.
+    AsFound(u32),
     /// Another moment of a kind of magnets.
     Moment(String),
     /// A field outside the other hypotheses.
     OtherField,
+}
+
+impl HypothesisKind {
+    /// Returns the number of the step whose corrector is not as believed.
+    pub(crate) fn step(&self) -> Option<u32> {
+        match self {
+            HypothesisKind::Step(number, ..) | HypothesisKind::AsFound(number) => Some(*number),
+            _ => None,
+        }
+    }
 }
 
 /// Posterior of a hypothesis after the reading, and the resulting model.
@@ -198,6 +215,10 @@ fn hypotheses(
         let of_step = step_hypotheses(adjustment, state, known, innovation, number, done);
         hypotheses.extend(of_step);
     }
+    for (index, done) in done.iter().enumerate() {
+        let found = found_otherwise(adjustment, known, innovation, index as u32 + 1, done);
+        hypotheses.extend(found);
+    }
     for kind in moved_kinds(state, known) {
         let more = Effect::default();
         let more = more.plus(&magnets(state, &known.setting, &kind));
@@ -308,6 +329,31 @@ fn step_hypotheses(
         })
     };
     others.into_iter().filter_map(hypothesis).collect()
+}
+
+/// Supposes that a step's magnets stood with the other end at the first reading: the ship
+/// without correctors is then another.
+fn found_otherwise(
+    adjustment: &Adjustment<'_>,
+    known: &StateWithSetting<'_>,
+    innovation: &Innovation,
+    number: u32,
+    done: &CompletedStep,
+) -> Option<Hypothesis> {
+    let supposed = FoundOtherwise::suppose(adjustment, &done.step)?;
+    let recorded = adjustment.binnacle;
+    let more = effect(recorded, &recorded.setting);
+    let more = more.less(&effect(recorded, &supposed.binnacle.setting));
+    let shown = done.turned_deg.map_or(0.0, |turned_deg| {
+        let sd_deg = done.step.tolerance_deg / NORMAL_99;
+        let off = |change_deg: f64| (wrap_180(turned_deg - change_deg) / sd_deg).powi(2);
+        (off(done.step.change_deg) - off(supposed.change_deg)) / 2.0
+    });
+    Some(Hypothesis {
+        shift: Some(innovation.perturbation(known, &more)),
+        log_prior: FOUND_OTHERWISE.ln() + shown,
+        ..Hypothesis::new(HypothesisKind::AsFound(number), FOUND_OTHERWISE)
+    })
 }
 
 /// Lists the kinds of magnets whose setting changed since the first reading.

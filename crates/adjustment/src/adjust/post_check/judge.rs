@@ -64,10 +64,14 @@ impl Judge<'_> {
                 misreadings: self.misreadings(),
             });
         }
-        if share_of(|kind| matches!(kind, HypothesisKind::Step(..))) > LIKELY {
+        let of_steps = share_of(|kind| kind.step().is_some());
+        let likeliest = posterior.iter().max_by(|a, b| a.share.total_cmp(&b.share));
+        // Magnets that stood otherwise before stand right now: the reading updates the model.
+        let is_slip = likeliest.is_some_and(|one| matches!(one.kind, HypothesisKind::Step(..)));
+        if of_steps > LIKELY && is_slip {
             return self.slip(posterior);
         }
-        let updated = update_prediction(self.adjustment, self.state, self.known, posterior)?;
+        let updated = update_prediction(self.adjustment, self.known, posterior)?;
         let updated = Box::new(updated);
         let beyond = find_violations(
             self.adjustment,
@@ -91,6 +95,7 @@ impl Judge<'_> {
             compass_deg: None,
             circumstances: Circumstances {
                 earlier_lambda: None,
+                shifted: None,
                 is_updated_here: true,
                 ..self.adjustment.circumstances
             },
@@ -107,9 +112,8 @@ impl Judge<'_> {
     /// Names the most probable step, and its most probable slip.
     fn slip(&self, posterior: &[Posterior]) -> Result<Verdict, AdjustError> {
         let share_of = |wanted: u32| {
-            let those = posterior.iter().filter(
-                |one| matches!(one.kind, HypothesisKind::Step(number, ..) if number == wanted),
-            );
+            let those = posterior.iter();
+            let those = those.filter(|one| one.kind.step() == Some(wanted));
             those.map(|one| one.share).sum::<f64>()
         };
         let mut best: Option<(f64, &Posterior, u32, Slip, &Setting)> = None;

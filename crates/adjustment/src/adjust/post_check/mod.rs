@@ -86,7 +86,7 @@ pub fn predict_by_compass(
     let reading = adjustment.reading;
     let innovation = Innovation::new(adjustment, &state, &known, reading, adjustment.vertical);
     let posterior = weigh_by_compass(adjustment, &state, &known, &innovation, done);
-    update_prediction(adjustment, &state, &known, &posterior)
+    update_prediction(adjustment, &known, &posterior)
 }
 
 fn parts(innovation: &Innovation) -> Vec<FieldComponent> {

@@ -74,7 +74,7 @@ pub enum Verdict {
         step: u32,
         /// Suspected slip.
         slip: Slip,
-        /// Posterior probability of a slip in that step, 0 to 1.
+        /// Posterior probability that its corrector is not as believed, 0 to 1.
         share: f64,
         /// Resulting setting.
         setting: Setting,

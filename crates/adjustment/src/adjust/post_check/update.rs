@@ -5,8 +5,7 @@ use super::innovation::{MODEL_SIZE, ModelVector};
 use super::result::UpdatedPrediction;
 use crate::adjust::inputs::{AdjustError, Adjustment};
 use crate::adjust::prediction::{PredictedTable, tables_by};
-use crate::adjust::state::{MagneticState, StateWithSetting};
-use binnacle_compass::deviation::DeviationError;
+use crate::adjust::state::StateWithSetting;
 use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::ship::PARAMETERS;
 use nalgebra::SMatrix;
@@ -14,7 +13,6 @@ use nalgebra::SMatrix;
 /// Combines the posteriors of all hypotheses to a mean and its covariance.
 pub(crate) fn update_prediction(
     adjustment: &Adjustment<'_>,
-    state: &MagneticState<'_>,
     known: &StateWithSetting<'_>,
     posterior: &[Posterior],
 ) -> Result<UpdatedPrediction, AdjustError> {
@@ -26,10 +24,7 @@ pub(crate) fn update_prediction(
     }
     let spread = (spread + spread.transpose()) / 2.0;
     let model_after = corrected_model(&known.model, &mean, &spread);
-    let after = tables_by(adjustment, |earth| {
-        let predicted = state.model_at(&known.model, &known.setting, earth)?;
-        Ok::<Model, DeviationError>(corrected_model(&predicted, &mean, &spread))
-    })?;
+    let after = tables_by(adjustment, &model_after)?;
     let greatest =
         |of: fn(&PredictedTable) -> Option<f64>| after.iter().filter_map(of).fold(0.0, f64::max);
     Ok(UpdatedPrediction {

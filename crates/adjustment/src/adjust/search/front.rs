@@ -17,8 +17,8 @@ pub struct Optimality {
     /// Proven: every setting was tried or excluded, and none is better by more than a gap
     /// that no card shows.
     pub proven: bool,
-    /// Greatest possible improvement over the best plan's worst residual, weighted over the
-    /// waters, degrees.
+    /// Greatest possible improvement over the best plan's worst residual with its band,
+    /// weighted over the waters, degrees.
     pub gap_deg: f64,
     /// Number of boxes of settings in the search.
     pub nodes: u64,
@@ -32,7 +32,8 @@ pub struct Optimality {
 pub(crate) struct BestSetting {
     pub(crate) setting: Setting,
     pub(crate) moves: u32,
-    pub(crate) worst_deg: f64,
+    /// Worst residual with the band of the soft iron, weighted over the waters, degrees.
+    pub(crate) reach_deg: f64,
 }
 
 /// Best setting for each number of moves.
@@ -57,22 +58,22 @@ impl ParetoFront {
         }
     }
 
-    /// Returns the best residual with at most this number of moves.
+    /// Returns the best residual with its band, with at most this number of moves.
     pub(crate) fn at(&self, moves: u32) -> f64 {
         let known = self.best[..=(moves as usize).min(MOST_MOVES - 1)]
             .iter()
             .flatten();
         known
-            .map(|found| found.worst_deg)
+            .map(|found| found.reach_deg)
             .fold(f64::INFINITY, f64::min)
     }
 
-    pub(crate) fn offer(&mut self, moves: u32, worst_deg: f64, setting: impl FnOnce() -> Setting) {
-        if worst_deg < self.at(moves) && (moves as usize) < MOST_MOVES {
+    pub(crate) fn offer(&mut self, moves: u32, reach_deg: f64, setting: impl FnOnce() -> Setting) {
+        if reach_deg < self.at(moves) && (moves as usize) < MOST_MOVES {
             self.best[moves as usize] = Some(BestSetting {
                 setting: setting(),
                 moves,
-                worst_deg,
+                reach_deg,
             });
         }
     }
@@ -84,7 +85,7 @@ impl ParetoFront {
         for next in self.best.iter().flatten() {
             if found
                 .last()
-                .is_none_or(|last| next.worst_deg < last.worst_deg)
+                .is_none_or(|last| next.reach_deg < last.reach_deg)
             {
                 found.push(next);
             }

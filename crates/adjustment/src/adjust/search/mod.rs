@@ -23,7 +23,7 @@ pub(crate) use front::{BestSetting, ParetoFront};
 use super::corrector_moves;
 use super::heeling;
 use super::inputs::Adjustment;
-use super::state::MagneticState;
+use super::state::{IronBands, MagneticState};
 use crate::binnacle::{Axis, HeelingSetting, Setting, Soft};
 use crate::corrector::{Effect, Iron, heeling_effect};
 use candidates::{AxisCandidates, AxisSetting};
@@ -97,10 +97,15 @@ pub(crate) fn search(adjustment: &Adjustment<'_>, state: &MagneticState<'_>) -> 
 }
 
 impl Search<'_> {
-    fn objective(&self, effect: &Effect) -> Objective<'_> {
-        Objective::new(&self.compass, self.adjustment.waters, |h_nt| {
-            self.state.with_effect(effect, h_nt)
-        })
+    fn objective(&self, soft: &Soft, effect: &Effect) -> Objective<'_> {
+        let waters = self.adjustment.waters;
+        let bands = IronBands::new(self.state, self.adjustment.standing(), soft, waters);
+        Objective::new(
+            &self.compass,
+            waters,
+            |h_nt| self.state.with_effect(effect, h_nt),
+            |water, magnetic_rad| bands.band_rad(water, magnetic_rad),
+        )
     }
 
     /// Evaluates a choice with its bound, and offers it with the present magnets.
@@ -113,7 +118,7 @@ impl Search<'_> {
             .as_ref()
             .map(|set| heeling_effect(binnacle, &iron, set));
         let effect = of_iron.plus(&of_heeling.unwrap_or_default());
-        let objective = self.objective(&effect);
+        let objective = self.objective(&soft, &effect);
         let bucket = binnacle.design.heeling.as_ref().zip(heeling.as_ref());
         let used = bucket.map(|(bucket, set)| used_by(binnacle, &bucket.magnet, set.count));
         let stood = self.adjustment.standing().heeling.as_ref();
@@ -129,8 +134,8 @@ impl Search<'_> {
         let [one, other] = &self.axes;
         let b = [one, other]
             .map(|axis| axis.settings[0].field_nt(&axis.fields(binnacle, &choice.iron)));
-        let worst_deg = objective.worst_deg([b[0][0] + b[1][0], b[0][1] + b[1][1]]);
-        front.offer(choice.moves, worst_deg, || {
+        let reach_deg = objective.reach_deg([b[0][0] + b[1][0], b[0][1] + b[1][1]]);
+        front.offer(choice.moves, reach_deg, || {
             setting(&choice, &one.settings[0], &other.settings[0])
         });
         choice
@@ -160,7 +165,8 @@ impl Search<'_> {
                 }
                 let (fields, objective) = known.get_or_insert_with(|| {
                     let fields = |a: usize| self.axes[a].fields(self.state.binnacle, &choice.iron);
-                    ([fields(0), fields(1)], self.objective(&choice.effect))
+                    let objective = self.objective(&choice.soft, &choice.effect);
+                    ([fields(0), fields(1)], objective)
                 });
                 let [along, across] = &mut trees;
                 let along =
@@ -195,7 +201,7 @@ impl Search<'_> {
                 x: [-x, x],
                 y: [-y, y],
             };
-            let objective = self.objective(&choice.effect);
+            let objective = self.objective(&choice.soft, &choice.effect);
             left_deg = relaxed_within(&objective, within, left_deg, &mut nodes);
         }
         front.optimality.nodes += nodes;
@@ -231,8 +237,8 @@ impl Search<'_> {
                     .within(self.stock)
                 {
                     let within = pair.within(node);
-                    let worst_deg = objective.worst_deg([within.x[0], within.y[0]]);
-                    front.offer(pair.moves, worst_deg, || setting(choice, one, other));
+                    let reach_deg = objective.reach_deg([within.x[0], within.y[0]]);
+                    front.offer(pair.moves, reach_deg, || setting(choice, one, other));
                 }
                 continue;
             }

@@ -1,11 +1,12 @@
-//! Objective of the search: the worst residual on any heading, weighted over the waters,
-//! with two bounds for whole families of settings.
+//! Objective of the search: the worst residual with its band on any heading, weighted over
+//! the waters, with two bounds for whole families of settings.
 //!
 //! On one heading, the residual is the angle of a vector that is linear in the magnets'
 //! field b. Over a rectangle of b, it is least at a corner, or zero within. For any b, the
 //! residuals on two opposite headings together are no better than the soft iron's alone:
 //! the two vectors sum to twice it, and the vectors within an angle of north form a convex
-//! cone (docs/science.md, §11).
+//! cone (docs/science.md, §11). The band is that of the soft iron with magnets that leave no
+//! B and C; it widens with every corrector that moves and with the error of λ.
 
 use crate::adjust::inputs::Water;
 use binnacle_compass::ship::ShipMagnetism;
@@ -14,6 +15,9 @@ use binnacle_compass::ship::ShipMagnetism;
 const HEADINGS: usize = 72;
 /// Stride of headings in the bound of a box.
 const STRIDE: usize = 3;
+
+/// Band beyond which no plan is acceptable, radians.
+const WIDEST_BAND_RAD: f64 = 1.0;
 
 /// A rectangle of horizontal fields, nT.
 #[derive(Clone, Copy, Debug)]
@@ -61,6 +65,8 @@ struct WaterField {
     weight: f64,
     /// East and north parts of the field on all headings, without the magnets, nT.
     fixed: Vec<EastNorth>,
+    /// Tangents of the bands on all headings.
+    bands: Vec<f64>,
 }
 
 impl HeadingGrid {
@@ -80,11 +86,12 @@ impl HeadingGrid {
 
 impl<'a> Objective<'a> {
     /// Prepares a choice; `ship_at` gives the ship with this soft iron and without magnets
-    /// at a horizontal field.
+    /// at a horizontal field, and `band` half the 95 % band on a magnetic heading, radians.
     pub(crate) fn new(
         compass: &'a HeadingGrid,
         waters: &[Water],
         ship_at: impl Fn(f64) -> ShipMagnetism,
+        band: impl Fn(&Water, f64) -> f64,
     ) -> Objective<'a> {
         let total: f64 = waters.iter().map(|water| water.weight).sum();
         let counted = waters.iter().filter(|water| water.weight > 0.0);
@@ -106,6 +113,10 @@ impl<'a> Objective<'a> {
             WaterField {
                 weight: water.weight / total,
                 fixed: fixed.collect(),
+                bands: (0..HEADINGS)
+                    .map(|i| band(water, i as f64 * std::f64::consts::TAU / HEADINGS as f64))
+                    .map(|band| band.min(WIDEST_BAND_RAD).tan())
+                    .collect(),
             }
         });
         Objective {
@@ -114,7 +125,7 @@ impl<'a> Objective<'a> {
         }
     }
 
-    /// Bounds the worst residual with any magnets, degrees.
+    /// Bounds the worst residual and band with any magnets, degrees.
     pub(crate) fn bound_for_iron(&self) -> f64 {
         self.weighted(|water| {
             let half = HEADINGS / 2;
@@ -123,23 +134,25 @@ impl<'a> Objective<'a> {
                     let (one, other) = (water.fixed[i], water.fixed[i + half]);
                     // In the other heading's axes, north and the induced field are turned
                     // by half a circle; b is not, and drops out.
-                    one.plus(other).tangent()
+                    let band = water.bands[i].min(water.bands[i + half]);
+                    widened(one.plus(other).tangent(), band)
                 })
                 .fold(0.0, f64::max)
         })
     }
 
-    /// Returns the worst residual with magnets of this field, weighted over the waters,
-    /// degrees.
-    pub(crate) fn worst_deg(&self, b: [f64; 2]) -> f64 {
+    /// Returns the worst residual and band with magnets of this field, weighted over the
+    /// waters, degrees.
+    pub(crate) fn reach_deg(&self, b: [f64; 2]) -> f64 {
         self.weighted(|water| {
             let each = water.fixed.iter().zip(&self.compass.read);
-            each.map(|(fixed, read)| with(*fixed, *read, b).tangent())
+            each.zip(&water.bands)
+                .map(|((fixed, read), band)| widened(with(*fixed, *read, b).tangent(), *band))
                 .fold(0.0, f64::max)
         })
     }
 
-    /// Bounds the worst residual with magnets within the box, degrees.
+    /// Bounds the worst residual and band with magnets within the box, degrees.
     pub(crate) fn bound_deg(&self, within: &FieldBox) -> f64 {
         self.bound_by(STRIDE, within)
     }
@@ -151,8 +164,10 @@ impl<'a> Objective<'a> {
 
     fn bound_by(&self, stride: usize, within: &FieldBox) -> f64 {
         self.weighted(|water| {
-            let each = water.fixed.iter().zip(&self.compass.read).step_by(stride);
-            each.map(|(fixed, read)| least_tangent(*fixed, *read, within))
+            let each = water.fixed.iter().zip(&self.compass.read);
+            each.zip(&water.bands)
+                .step_by(stride)
+                .map(|((fixed, read), band)| widened(least_tangent(*fixed, *read, within), *band))
                 .fold(0.0, f64::max)
         })
     }
@@ -193,6 +208,17 @@ impl EastNorth {
         } else {
             f64::INFINITY
         }
+    }
+}
+
+/// Returns the tangent of the sum of two angles, given by their tangents; infinite from a
+/// right angle on.
+fn widened(tangent: f64, band: f64) -> f64 {
+    let left = 1.0 - tangent * band;
+    if left > 0.0 {
+        (tangent + band) / left
+    } else {
+        f64::INFINITY
     }
 }
 

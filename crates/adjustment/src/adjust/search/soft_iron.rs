@@ -7,7 +7,7 @@ use crate::binnacle::{BarSetting, Binnacle, PairSetting, Setting, Soft};
 /// Lists all choices of soft iron, with the moves from the present one.
 pub(crate) fn iron(state: &MagneticState<'_>, standing: &Setting) -> Vec<(Soft, u32)> {
     let binnacle = state.binnacle;
-    let pairs = pairs(binnacle, standing, state.may_move_pair);
+    let pairs = pairs(binnacle, standing);
     let bars = bars(state, standing);
     let mut all = Vec::with_capacity(pairs.len() * bars.len());
     for pair in &pairs {
@@ -24,8 +24,8 @@ pub(crate) fn iron(state: &MagneticState<'_>, standing: &Setting) -> Vec<(Soft, 
     all
 }
 
-fn pairs(binnacle: &Binnacle, standing: &Setting, may_move: bool) -> Vec<Option<PairSetting>> {
-    let Some(iron) = binnacle.design.quadrantal.as_ref().filter(|_| may_move) else {
+fn pairs(binnacle: &Binnacle, standing: &Setting) -> Vec<Option<PairSetting>> {
+    let Some(iron) = &binnacle.design.quadrantal else {
         return vec![standing.quadrantal.clone()];
     };
     let mut all = vec![None];

@@ -6,10 +6,7 @@
 
 use crate::adjust::corrector_moves::match_trays;
 use crate::binnacle::{Axis, Binnacle, Setting, Soft, Tray};
-use crate::corrector::{Effect, Iron, heeling_effect, tray_effect};
-
-/// Relative standard deviation of the needles' moment, which no catalogue gives.
-const NEEDLE_SD: f64 = 0.1;
+use crate::corrector::{Effect, Iron, NEEDLE_SD, heeling_effect, tray_effect};
 
 /// Returns the errors of a change from the binnacle's own setting to another.
 pub(crate) fn setting_errors(binnacle: &Binnacle, to: &Setting) -> Vec<Effect> {

@@ -1,18 +1,19 @@
 //! State of the ship's magnetism at the berth, and with any other setting.
 //!
 //! `base` is the ship without correctors: the measured ship less the effect of its setting
-//! then. The needles' part of that effect was fitted at a mean H of the vessel's waters.
+//! then. The needles' part of that effect is in the model as at the mean H of its samples.
 
 use super::corrector_errors::setting_errors;
 use super::field_drift::FieldDrift;
 use crate::adjust::diagnosis::VerticalCheck;
 use crate::adjust::inputs::{AdjustError, Adjustment, VerticalReading};
-use crate::berth::{BerthEstimate, JointCovariance, lambda_at_berth};
+use crate::adjust::needle_part::{at_lambda, lambda_without_needles};
+use crate::berth::{BerthEstimate, JointCovariance, TwoHeadings, lambda_by_two_headings};
 use crate::binnacle::{BarSetting, Binnacle, Setting, Soft};
-use crate::corrector::{Effect, Iron, effect};
+use crate::corrector::{Effect, Iron, effect, needle_induction};
 use binnacle_compass::deviation::DeviationError;
 use binnacle_compass::model::{Covariance, Model, Parameters};
-use binnacle_compass::ship::{EarthField, PARAMETERS, ShipMagnetism};
+use binnacle_compass::ship::{PARAMETERS, ShipMagnetism};
 
 const LAMBDA: usize = PARAMETERS + 1;
 
@@ -24,13 +25,14 @@ pub(crate) struct MagneticState<'a> {
     pub(crate) estimate: BerthEstimate,
     joint: JointCovariance,
     pub(crate) drift: FieldDrift,
+    /// λ and the quay's field, if a second heading was read.
+    pub(crate) two_headings: Option<TwoHeadings>,
     lambda: f64,
     base: ShipMagnetism,
     /// Effect of the correctors at the time of the reading.
     measured_effect: Effect,
     /// Horizontal field at which the needles' part was fitted, nT.
-    reference_h_nt: f64,
-    pub(crate) may_move_pair: bool,
+    pub(super) reference_h_nt: f64,
     pub(crate) may_move_bar: bool,
     /// Vertical field at the berth, if measured plausibly.
     pub(crate) vertical: Option<VerticalReading>,
@@ -40,60 +42,67 @@ impl<'a> MagneticState<'a> {
     pub(crate) fn new(adjustment: &Adjustment<'a>) -> Result<MagneticState<'a>, AdjustError> {
         let binnacle = adjustment.binnacle;
         let measured_effect = effect(binnacle, &binnacle.setting);
-        let reference_h_nt = harmonic_mean_h(adjustment);
         let model = adjustment.model;
-        let needle = needle_only(&measured_effect, reference_h_nt);
+        let reference_h_nt = model.reference_h_nt();
+        let reference_h_nt = reference_h_nt.unwrap_or_else(|| harmonic_mean_h(adjustment));
         let p = &model.parameters_over_lambda;
-        let mut lambda = 0.9;
-        let mut estimate;
-        let mut rounds = 0;
-        // The magnetometer does not measure the needles; their reduction of D is known
-        // except for λ, to which they add nothing.
-        loop {
-            let without = minus(&ShipMagnetism::from_parameters(p, lambda), &needle);
-            let parameters = without.parameters_over_lambda();
-            let parameters = parameters.map_err(|_| DeviationError::NotFinite)?;
-            let without = Model {
-                parameters_over_lambda: parameters,
-                ..model.clone()
-            };
-            estimate = lambda_at_berth(&without, adjustment.earth, adjustment.reading)?;
-            lambda = estimate.lambda.value;
-            rounds += 1;
-            if rounds == 4 {
-                break;
+        let (earth, reading) = (adjustment.earth, adjustment.reading);
+        let mut estimate = lambda_without_needles(model, binnacle, reference_h_nt, earth, reading)?;
+        let two_headings = match &adjustment.circumstances.shifted {
+            Some(shifted) => {
+                let usual = estimate.lambda.value;
+                let without = at_lambda(model, binnacle, reference_h_nt, usual)?;
+                let two = lambda_by_two_headings(&without, earth, [reading, shifted], usual)?;
+                estimate.replace_lambda(&two);
+                Some(two)
             }
-        }
+            None => None,
+        };
+        let lambda = estimate.lambda.value;
         let mut joint = estimate.covariance.unwrap_or_default();
         joint[LAMBDA][LAMBDA] += (lambda * adjustment.scale_sd).powi(2);
         let drift = FieldDrift::new(adjustment, &estimate, joint[LAMBDA][LAMBDA]);
         drift.widen(&mut joint);
         let measured = ShipMagnetism::from_parameters(p, lambda);
         let base = minus(&measured, &measured_effect.as_ship(reference_h_nt));
-        let mut state = MagneticState {
+        Ok(MagneticState {
             binnacle,
             model,
             estimate,
             joint,
             drift,
+            two_headings,
             lambda,
             base,
             measured_effect,
             reference_h_nt,
-            may_move_pair: true,
             may_move_bar: model.identifiable.is_none_or(|known| known.chi13),
             vertical: adjustment
                 .vertical
                 .filter(|read| VerticalCheck::new(*read, adjustment.earth, binnacle).is_credible()),
-        };
-        state.may_move_pair = state.lambda_sd_share() <= adjustment.limits.lambda_sd;
-        Ok(state)
+        })
     }
 
-    /// Returns the state as if λ were precise enough to move spheres.
-    pub(crate) fn with_free_spheres(&self) -> MagneticState<'a> {
+    /// Returns the state as if λ were known exactly.
+    pub(crate) fn with_exact_lambda(&self) -> MagneticState<'a> {
+        let mut joint = self.joint;
+        joint[LAMBDA] = [0.0; LAMBDA + 1];
+        for row in &mut joint {
+            row[LAMBDA] = 0.0;
+        }
+        MagneticState { joint, ..*self }
+    }
+
+    /// Returns the state with another λ, for the same headings at sea.
+    pub(crate) fn with_lambda(&self, lambda: f64) -> MagneticState<'a> {
+        let p = &self.model.parameters_over_lambda;
+        let measured = ShipMagnetism::from_parameters(p, lambda);
         MagneticState {
-            may_move_pair: true,
+            lambda,
+            base: minus(
+                &measured,
+                &self.measured_effect.as_ship(self.reference_h_nt),
+            ),
             ..*self
         }
     }
@@ -159,26 +168,12 @@ impl<'a> MagneticState<'a> {
         Ok(Model {
             parameters_over_lambda: after,
             covariance,
+            needles: needle_induction(&effect, ship.lambda(), self.reference_h_nt),
             ..self.model.clone()
         })
     }
 
-    /// Returns the model for another horizontal field, where the needles count differently.
-    pub(crate) fn model_at(
-        &self,
-        model: &Model,
-        setting: &Setting,
-        earth: EarthField,
-    ) -> Result<Model, DeviationError> {
-        let ship = self.with_effect(&effect(self.binnacle, setting), earth.h_nt);
-        let parameters = ship.parameters_over_lambda();
-        Ok(Model {
-            parameters_over_lambda: parameters.map_err(|_| DeviationError::NotFinite)?,
-            ..model.clone()
-        })
-    }
-
-    fn covariance(
+    pub(super) fn covariance(
         &self,
         setting: &Setting,
         after: &Parameters,
@@ -332,16 +327,8 @@ fn minus(ship: &ShipMagnetism, other: &ShipMagnetism) -> ShipMagnetism {
     }
 }
 
-fn needle_only(effect: &Effect, h_nt: f64) -> ShipMagnetism {
-    Effect {
-        needle_nt: effect.needle_nt,
-        ..Effect::default()
-    }
-    .as_ship(h_nt)
-}
-
-/// Averages the horizontal field over the waters of the fit, as the needles' part of the
-/// fitted D is averaged.
+/// Averages the horizontal field over the waters, for a model that does not say at which
+/// field it contains the needles' part.
 fn harmonic_mean_h(adjustment: &Adjustment<'_>) -> f64 {
     let (weights, inverse) = adjustment.waters.iter().fold((0.0, 0.0), |sum, w| {
         (sum.0 + w.weight, sum.1 + w.weight / w.h_nt)

@@ -5,6 +5,7 @@ mod result;
 
 pub use result::{ProvenEffect, StepCheck, TotalTurn};
 
+use super::as_found::FoundOtherwise;
 use super::inputs::{AdjustError, Adjustment};
 use super::instructions::{Place, Step, compass_turn, elsewhere, moved, replaced, tolerance_deg};
 use super::planning::plan;
@@ -82,6 +83,24 @@ pub fn check_step(
         })?);
         return Ok(StepCheck::WrongEnd {
             turned_deg,
+            setting,
+            outcome,
+        });
+    }
+    let supposed = FoundOtherwise::suppose(adjustment, step).filter(|supposed| {
+        wrap_180(turned_deg - supposed.change_deg).abs() <= supposed.tolerance_deg
+    });
+    if let Some(supposed) = supposed {
+        let setting = step.setting_after.clone();
+        let outcome = Box::new(plan(&Adjustment {
+            binnacle: &supposed.binnacle,
+            now: Some(&setting),
+            compass_deg: Some(after_deg),
+            ..adjustment.clone()
+        })?);
+        return Ok(StepCheck::FoundOtherwise {
+            turned_deg,
+            binnacle: Box::new(supposed.binnacle),
             setting,
             outcome,
         });

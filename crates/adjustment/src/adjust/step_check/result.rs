@@ -35,6 +35,18 @@ pub enum StepCheck {
         /// Plan from there.
         outcome: Box<Outcome>,
     },
+    /// The magnets stood with the other end before the step than recorded: the plan was made
+    /// for another ship.
+    FoundOtherwise {
+        /// Observed turn, degrees.
+        turned_deg: f64,
+        /// Binnacle with the setting as it was at the reading.
+        binnacle: Box<Binnacle>,
+        /// Actual setting.
+        setting: Setting,
+        /// Plan from there.
+        outcome: Box<Outcome>,
+    },
     /// The corrector has another strength than assumed: there is a new plan.
     OtherStrength {
         /// Strength as a share of the assumed one.

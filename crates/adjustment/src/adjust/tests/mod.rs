@@ -75,6 +75,8 @@ impl Case {
             samples_rejected: 0,
             quality: None,
             reference_grade: ReferenceGrade::Heading,
+            mean_h_nt: None,
+            needles: None,
         };
         // The magnetometer does not measure the needles.
         let there = sum(&bare, &there.as_ship(f64::INFINITY));

@@ -1,6 +1,7 @@
 //! Results of the search, and their optimality.
 
 use super::super::search::{candidates, objective, soft_iron};
+use super::super::state::IronBands;
 use super::super::*;
 use super::*;
 
@@ -68,7 +69,7 @@ fn trying_everything(case: &Case) {
         least = least.min(worst);
         let found = front.undominated();
         let found = found.iter().filter(|f| f.moves as usize <= moves);
-        let found = found.map(|f| f.worst_deg).fold(f64::INFINITY, f64::min);
+        let found = found.map(|f| f.reach_deg).fold(f64::INFINITY, f64::min);
         assert!((found - least).abs() < 0.0051, "{moves}: {found} {least}");
         levels += usize::from(worst.is_finite());
     }
@@ -78,10 +79,15 @@ fn trying_everything(case: &Case) {
 fn worst_of(case: &Case, state: &MagneticState<'_>, setting: &Setting) -> f64 {
     let compass = objective::HeadingGrid::new(state.constant_deg());
     let effect = effect(&case.binnacle, setting);
-    objective::Objective::new(&compass, &case.waters, |h_nt| {
-        state.with_effect(&effect, h_nt)
-    })
-    .worst_deg([0.0; 2])
+    let soft = setting.soft();
+    let bands = IronBands::new(state, &case.binnacle.setting, &soft, &case.waters);
+    objective::Objective::new(
+        &compass,
+        &case.waters,
+        |h_nt| state.with_effect(&effect, h_nt),
+        |water, magnetic_rad| bands.band_rad(water, magnetic_rad),
+    )
+    .reach_deg([0.0; 2])
 }
 
 fn every_setting(state: &MagneticState<'_>, mut visit: impl FnMut(&Setting)) {
@@ -155,7 +161,9 @@ fn a_bound_is_never_above_what_it_bounds() {
     let compass = objective::HeadingGrid::new(0.7);
     for _ in 0..200 {
         let ship = crate::test_support::random_ship(&mut rng);
-        let objective = objective::Objective::new(&compass, &waters, |_| ship);
+        let band_rad: f64 = rng.random_range(0.0..0.1);
+        let band = |_: &Water, magnetic_rad: f64| band_rad * magnetic_rad.sin().powi(2);
+        let objective = objective::Objective::new(&compass, &waters, |_| ship, band);
         let corner: [f64; 2] = std::array::from_fn(|_| rng.random_range(-9_000.0..9_000.0));
         let size: [f64; 2] = std::array::from_fn(|_| rng.random_range(0.0..4_000.0));
         let within = objective::FieldBox {
@@ -165,7 +173,7 @@ fn a_bound_is_never_above_what_it_bounds() {
         let (iron, bound) = (objective.bound_for_iron(), objective.bound_deg(&within));
         for _ in 0..20 {
             let b = [0, 1].map(|a| corner[a] + size[a] * rng.random_range(0.0..1.0));
-            let worst = objective.worst_deg(b);
+            let worst = objective.reach_deg(b);
             assert!(bound <= worst + 1e-9, "{bound} {worst}");
             assert!(iron <= worst + 1e-9, "{iron} {worst}");
         }
@@ -208,17 +216,23 @@ fn magnets_cure_every_quadrant_of_signs() {
 fn the_first_plan_takes_the_fewest_moves_among_near_equals_and_the_others_trade() {
     let outcome = case(60.0).plan();
     let first = &outcome.plans[0];
+    let reach = |plan: &Plan| {
+        let reaches = plan.after.iter().skip(1).zip([2.0, 1.0]);
+        let weighed = reaches.map(|(table, weight)| weight * table.reach_deg.unwrap());
+        weighed.sum::<f64>() / 3.0
+    };
     let best = outcome
         .plans
         .iter()
-        .map(|p| p.worst_residual_deg)
+        .map(reach)
         .fold(f64::INFINITY, f64::min);
-    assert!(first.worst_residual_deg <= best + 0.1);
+    // The errors of moved magnets are in the tables, not in the search.
+    assert!(reach(first) <= best + 0.2);
     assert!(outcome.plans.len() >= 3);
     for other in &outcome.plans[1..] {
         assert!(other.moves != first.moves);
         let more = other.moves > first.moves;
-        assert_eq!(more, other.worst_residual_deg < first.worst_residual_deg);
+        assert!(more || reach(other) > reach(first));
     }
     assert!(outcome.optimality.unwrap().proven);
 }

@@ -54,12 +54,13 @@ fn a_model_without_covariance_is_refused() {
 }
 
 #[test]
-fn with_a_poor_magnetometer_spheres_stay_and_where_they_must_move_that_is_said() {
+fn where_spheres_must_move_and_lambda_is_poor_the_magnetometer_is_named() {
     let mut ship = bare();
     ship.chi[1][1] = -0.30;
+    (ship.b_nt[0], ship.b_nt[1]) = (4_500.0, -3_500.0);
     let case = Case::new(ship, class_a(), 60.0);
     let mut adjustment = case.adjustment();
-    adjustment.scale_sd = 0.05;
+    adjustment.scale_sd = 0.15;
     adjustment.limits = Limits::default();
     let outcome = plan(&adjustment).unwrap();
     let refused = &outcome.refusals[0];
@@ -72,19 +73,29 @@ fn with_a_poor_magnetometer_spheres_stay_and_where_they_must_move_that_is_said()
     assert!(refused.cures.contains(&Cure::ReadAgain));
     // Correctors on board would suffice, so none are asked for.
     assert_eq!(outcome.refusals.len(), 1, "{:?}", outcome.refusals);
-    adjustment.limits.residual_deg = 20.0;
-    adjustment.limits.band_deg = 20.0;
-    let outcome = plan(&adjustment).unwrap();
-    assert_eq!(
-        outcome.plans[0].setting.quadrantal,
-        case.binnacle.setting.quadrantal
-    );
-    assert!(
-        outcome
-            .notes
-            .iter()
-            .any(|note| note.contains("spheres are left as found"))
-    );
+}
+
+/// Without a cliff at any error of λ: they move as long as they gain more than they widen the
+/// band, and not where little D is left to gain.
+#[test]
+fn spheres_move_where_they_gain_more_than_they_widen_the_band() {
+    let binnacle = class_a();
+    let of_spheres = effect(&binnacle, &binnacle.setting).chi_at(BISCAY.h_nt);
+    let moves = |left_d: f64, scale_sd: f64| {
+        let mut ship = bare();
+        let there = of_spheres[0][0] - of_spheres[1][1];
+        ship.chi[1][1] = ship.chi[0][0] + there - 2.0 * left_d;
+        let case = Case::new(ship, binnacle.clone(), 60.0);
+        let mut adjustment = case.adjustment();
+        adjustment.scale_sd = scale_sd;
+        (adjustment.limits.residual_deg, adjustment.limits.band_deg) = (20.0, 20.0);
+        let outcome = plan(&adjustment).unwrap();
+        outcome.plans[0].setting.quadrantal != case.binnacle.setting.quadrantal
+    };
+    for scale_sd in [0.029, 0.031, 0.1] {
+        assert!(moves(0.06, scale_sd), "{scale_sd}");
+    }
+    assert!(!moves(0.002, 0.1));
 }
 
 #[test]

@@ -327,3 +327,47 @@ fn heeling_magnets_are_verified_by_the_vertical_field() {
     }
     assert!(moved >= 2, "{moved}");
 }
+
+/// The record has the red end the wrong way: the compass turns the other way when the magnets
+/// are taken out, and the plan is made for the ship as she is.
+#[test]
+fn magnets_that_stood_otherwise_than_recorded_are_found_by_the_first_step() {
+    let mut ship = bare();
+    ship.b_nt = [-2_500.0, 2_500.0, 0.0];
+    let case = Case::new(ship, class_a(), 45.0);
+    let mut recorded = case.binnacle.setting.clone();
+    let tray = &mut recorded.athwartship[0];
+    tray.red = tray.red.reversed();
+    let recorded = case.binnacle.with_setting(recorded).unwrap();
+    let adjustment = Adjustment {
+        binnacle: &recorded,
+        ..case.adjustment()
+    };
+    let state = MagneticState::new(&adjustment).unwrap();
+    let mut out = recorded.setting.clone();
+    out.athwartship.clear();
+    let step = instructions::steps(&adjustment, &state, &out).remove(0);
+    let truth = case.adjustment();
+    let truly = MagneticState::new(&truth).unwrap();
+    let mut empty = case.binnacle.setting.clone();
+    empty.athwartship.clear();
+    let turn = instructions::compass_turn(&truth, &truly, &case.binnacle.setting, &empty);
+    let after_deg = binnacle_compass::angle::wrap_360(50.0 + turn.change_deg);
+    let found = check_step(&adjustment, &step, 50.0, after_deg).unwrap();
+    let StepCheck::FoundOtherwise {
+        binnacle, outcome, ..
+    } = found
+    else {
+        panic!("{found:?}")
+    };
+    assert_eq!(binnacle.setting, case.binnacle.setting);
+    let with_truth = plan(&Adjustment {
+        now: Some(&out),
+        compass_deg: Some(after_deg),
+        ..case.adjustment()
+    });
+    assert_eq!(
+        outcome.plans[0].setting,
+        with_truth.unwrap().plans[0].setting
+    );
+}

@@ -11,7 +11,9 @@ use crate::report::predictions::{WatchPredictions, widened};
 use crate::report::references::References;
 use crate::state_space::ship_state::ShipState;
 use crate::weighing::records::Detected;
-use binnacle_analysis::fit::{Observation, check_residuals, check_used, possible_mistake};
+use binnacle_analysis::fit::{
+    Observation, check_residuals, check_used, mean_h_nt, possible_mistake,
+};
 use binnacle_analysis::fleet_prior::ShipPrior;
 use binnacle_analysis::readings::reading::Reading;
 use binnacle_compass::angle::wrap_180;
@@ -210,6 +212,7 @@ impl Fitting<'_> {
             caution
         };
         let rows = self.of_all_seas(span, &earlier, &usable, readings);
+        model.mean_h_nt = mean_h_nt(&rows);
         self.complete(&mut model, &observations, &rows, ship, caution);
         count(&mut model, span, &earlier, readings);
         Ok(model)
@@ -272,6 +275,8 @@ impl Fitting<'_> {
                 Some(_) => ReferenceGrade::CourseOverGround,
                 None => ReferenceGrade::Heading,
             },
+            mean_h_nt: None,
+            needles: None,
         }
     }
 

@@ -168,6 +168,8 @@ mod tests {
             samples_rejected: 0,
             quality: None,
             reference_grade: ReferenceGrade::Heading,
+            mean_h_nt: None,
+            needles: None,
         }
     }
 

@@ -27,6 +27,7 @@ pub(crate) use remark::Remark;
 pub(crate) use reschedule::{RetimeAccepted, RetimeDeclined, RetimeLapsed, RetimeProposed};
 
 use crate::work_orders::order_state::OrderState;
+use crate::work_orders::payload::as_found::AsFound;
 use crate::work_orders::payload::chosen_plan::ChosenPlan;
 use crate::work_orders::payload::photograph::Photo;
 use crate::work_orders::payload::recorded_reading::RecordedReading;
@@ -73,6 +74,8 @@ pub(crate) enum OrderEvent {
     Message(MessageSent),
     /// The adjuster went on board.
     OnBoard(Boarding),
+    /// The correctors were reported as found.
+    AsFound(Box<AsFound>),
     /// The magnetometer was read at the berth.
     BerthReading(Box<RecordedReading>),
     /// A plan was chosen.
@@ -119,6 +122,7 @@ impl OrderEvent {
             OrderEvent::CallMoved(event) => event.as_ref(),
             OrderEvent::Message(event) => event,
             OrderEvent::OnBoard(event) => event,
+            OrderEvent::AsFound(event) => event.as_ref(),
             OrderEvent::BerthReading(event) => event.as_ref(),
             OrderEvent::Plan(event) => event.as_ref(),
             OrderEvent::Step(event) => event.as_ref(),

@@ -1,5 +1,6 @@
 //! Payloads of events that the state of an order keeps.
 
+pub(crate) mod as_found;
 pub(crate) mod chosen_plan;
 pub(crate) mod exchange;
 pub(crate) mod hours;

@@ -34,6 +34,9 @@ pub(crate) enum StepVerdict {
     NotSeen,
     /// The magnets are in with the wrong end; there is a new plan.
     WrongEnd,
+    /// The magnets stood with the other end before the step than recorded; there is a new
+    /// plan.
+    FoundOtherwise,
     /// The corrector has another strength than assumed; there is a new plan.
     OtherStrength,
     /// Nothing explains the reading: read again.

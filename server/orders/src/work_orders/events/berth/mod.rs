@@ -1,5 +1,6 @@
-//! Events of the berth session: readings, plan, steps, corrector settings and photographs.
+//! Events of the berth session: correctors as found, readings, plan, steps, corrector settings and photographs.
 
+mod as_found;
 mod berth_reading;
 mod corrector_settings;
 mod photo;

@@ -1,0 +1,16 @@
+//! Correctors and compass as found.
+
+use crate::work_orders::events::event::Event;
+use crate::work_orders::order_state::OrderState;
+use crate::work_orders::payload::as_found::AsFound;
+
+impl Event for AsFound {
+    fn apply(&self, state: &mut OrderState) {
+        let as_read = state.binnacle.as_ref().map(|binnacle| &binnacle.setting);
+        if as_read.is_some_and(|setting| *setting != self.setting) {
+            // The reading was judged by correctors that do not stand so.
+            (state.reading, state.binnacle, state.plan) = (None, None, None);
+        }
+        state.as_found = Some(self.clone());
+    }
+}
