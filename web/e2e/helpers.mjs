@@ -48,6 +48,14 @@ export async function goToVessel(page, id, part = '') {
   await drawnInFull(page);
 }
 
+/** Opens one of the tabs of a vessel's page. */
+export async function openTab(page, name) {
+  const tabs = page.getByRole('navigation', { name: 'About the vessel' });
+  await tabs.getByRole('link', { name, exact: true }).click();
+  await tabs.locator('[aria-current=page]', { hasText: name }).waitFor();
+  await drawnInFull(page);
+}
+
 /**
  * Waits until no part of the page is still loading. Parts are built one after another, and each
  * moves those below it, also while a button there is pressed.

@@ -1,6 +1,6 @@
 /** Coming in, going out, and what lies between. */
 import assert from 'node:assert/strict';
-import { notSignedIn, signIn, openVessel } from '../helpers.mjs';
+import { notSignedIn, signIn, openTab, openVessel } from '../helpers.mjs';
 
 export const session = {
   'a wrong password is refused in words': {
@@ -73,6 +73,7 @@ export const session = {
     async run({ page, context, settings }) {
       await signIn(page, settings);
       await openVessel(page);
+      await openTab(page, 'Deviation');
       await context.setOffline(true);
       await page.getByRole('button', { name: 'Choose another place' }).click();
       await page.getByRole('button', { name: 'Show', exact: true }).click();
