@@ -48,6 +48,10 @@ export async function goToVessel(page, id, part = '') {
   await drawnInFull(page);
 }
 
+/** Opens the header's menu: on a phone the pages are in it. */
+export const openMenu = (page) =>
+  page.getByRole('banner').getByRole('button', { name: /Menu$/ }).click();
+
 /** Opens one of the tabs of a vessel's page. */
 export async function openTab(page, name) {
   const tabs = page.getByRole('navigation', { name: 'About the vessel' });

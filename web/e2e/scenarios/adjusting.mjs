@@ -9,6 +9,7 @@ import {
   notSignedIn,
   signIn,
   goToVessel,
+  openMenu,
   openTab,
   struck,
   chart,
@@ -390,6 +391,7 @@ export const adjusting = {
         await other.getByLabel('E-mail').fill(settings.adjuster);
         await other.getByLabel('Password').fill(settings.password);
         await other.getByRole('button', { name: 'Sign in' }).click();
+        await openMenu(other);
         await other.getByRole('link', { name: 'Work orders' }).click();
         await other.getByRole('row').filter({ hasText: name }).getByRole('link').click();
         await other.getByRole('heading', title).waitFor();

@@ -377,10 +377,11 @@ export const alerts = {
       await signIn(page, settings);
       const vessel = await withModel(page);
       await limit(page, vessel.id, { deviation_deg: 1.5 });
-      await page.getByTestId('alert-badge').waitFor();
+      const badge = page.getByTestId('alert-badge-short');
+      await badge.waitFor();
       await fitsItsWidth(page);
       await shoot('vessels-alerts-phone', { fullPage: true });
-      await page.getByRole('link', { name: /^Alerts/ }).click();
+      await badge.click();
       await page.getByRole('article').first().waitFor();
       await fitsItsWidth(page);
       await shoot('alerts-phone', { fullPage: true });

@@ -29,13 +29,15 @@ export type Route =
   | { page: (typeof plain)[number] | (typeof ofSettings)[keyof typeof ofSettings] | 'settings' }
   | { page: 'vessels' | 'work-orders' | 'new-work-order' | 'not-found' }
   | { page: 'vessel'; id: string; tab: VesselTab }
-  | { page: 'work-order'; id: string };
+  | { page: 'work-order'; id: string }
+  | { page: 'help'; topic: string };
 
 export function parseRoute(path: string): Route {
   const [first, second, ...rest] = path.split('/').filter((part) => part !== '');
   if (first === undefined) return { page: 'vessels' };
   if (first === 'work-orders' && rest.length === 0) return workOrderRoute(second);
   if (first === 'settings' && rest.length === 0) return settingsRoute(second);
+  if (first === 'help' && rest.length === 0) return { page: 'help', topic: second ?? '' };
   const known = plain.find((page) => page === first);
   if (known && second === undefined) return { page: known };
   return first === 'vessels' ? vesselRoute(second, rest) : { page: 'not-found' };
@@ -90,6 +92,10 @@ export const settingsPaths = Object.entries(ofSettings).map(([word, page]) => ({
   page,
   path: `/settings/${word}`,
 }));
+export const helpPath = '/help';
+/** A topic of the help, or one of its sections. */
+export const helpTopicPath = (topic: string, section?: string): string =>
+  `${helpPath}/${topic}${section === undefined ? '' : `#${section}`}`;
 export const workOrdersPath = '/work-orders';
 export const workOrderPath = (id: string): string => `/work-orders/${encodeURIComponent(id)}`;
 /** Where an adjustment is ordered, perhaps of a compass that is already known. */
