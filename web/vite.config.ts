@@ -1,12 +1,13 @@
 import { svelte } from '@sveltejs/vite-plugin-svelte';
 import { defineConfig } from 'vitest/config';
+import { help } from './scripts/help.ts';
 import { land } from './scripts/land.ts';
 
 /** Where `npm run dev` finds a running server. */
 const server = process.env['BINNACLE_URL'] ?? 'http://127.0.0.1:8080';
 
 export default defineConfig({
-  plugins: [svelte(), land()],
+  plugins: [svelte(), land(), help()],
   build: {
     target: 'es2022',
     // The content security policy allows nothing but files of our own.

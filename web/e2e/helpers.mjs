@@ -48,6 +48,18 @@ export async function goToVessel(page, id, part = '') {
   await drawnInFull(page);
 }
 
+/** Opens the header's menu: on a phone the pages are in it. */
+export const openMenu = (page) =>
+  page.getByRole('banner').getByRole('button', { name: /Menu$/ }).click();
+
+/** Opens one of the tabs of a vessel's page. */
+export async function openTab(page, name) {
+  const tabs = page.getByRole('navigation', { name: 'About the vessel' });
+  await tabs.getByRole('link', { name, exact: true }).click();
+  await tabs.locator('[aria-current=page]', { hasText: name }).waitFor();
+  await drawnInFull(page);
+}
+
 /**
  * Waits until no part of the page is still loading. Parts are built one after another, and each
  * moves those below it, also while a button there is pressed.

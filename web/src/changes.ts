@@ -28,6 +28,18 @@ const passing: readonly ChangeCause[] = [
 export const isTheShips = (change: Change): boolean =>
   !change.withdrawn && !passing.includes(change.cause);
 
+/** Instants this far apart are of two changes, ms: an alert's beginning may have been refined. */
+const sameChangeMs = 3 * 86_400_000;
+
+/** The change nearest to an instant, the ship's own first; none where none is near. */
+export function changeNear({ changes }: Timeline, instant: string | null): Change | undefined {
+  if (instant === null) return undefined;
+  const off = (change: Change) => Math.abs(Date.parse(change.from) - Date.parse(instant));
+  return changes
+    .filter((change) => off(change) <= sameChangeMs)
+    .sort((a, b) => Number(isTheShips(b)) - Number(isTheShips(a)) || off(a) - off(b))[0];
+}
+
 /** The first sample. A report from before it leaves the epochs before it empty. */
 export const sampledSince = ({ epochs }: Timeline): string | null =>
   epochs.find((epoch) => epoch.data_from !== null)?.data_from ?? null;

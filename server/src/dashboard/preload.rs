@@ -50,9 +50,9 @@ fn files_of(source: &str, manifest: &BTreeMap<String, Built>) -> Vec<String> {
     found.into_iter().collect()
 }
 
-/// Returns the vessel whose page is at `path`.
+/// Returns the vessel whose page, or one of whose tabs, is at `path`.
 pub(super) fn vessel(path: &str) -> Option<Uuid> {
-    let id = path.strip_prefix("vessels/")?;
+    let id = path.strip_prefix("vessels/")?.split('/').next()?;
     Uuid::try_parse(id).ok()
 }
 
@@ -151,6 +151,7 @@ mod tests {
             "{both}"
         );
         assert!(both.contains("</api/v1/fleet?vessel="), "{both}");
+        assert_eq!(links(&format!("{VESSELS_PAGE}/changes"), &somebody), both);
         assert!(!links("vessels/none\r\nX: y", &somebody).contains("vessels"));
         let without_fleet = super::links(vessel(VESSELS_PAGE), false, &somebody);
         let without_fleet = without_fleet.unwrap();

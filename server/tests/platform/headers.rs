@@ -16,7 +16,7 @@ async fn every_response_to_people_has_browser_security_headers() {
         assert_eq!(header("referrer-policy"), "same-origin");
         assert_eq!(header("cross-origin-opener-policy"), "same-origin");
         assert_eq!(header("cross-origin-resource-policy"), "same-origin");
-        assert!(header("permissions-policy").contains("geolocation=()"));
+        assert!(header("permissions-policy").contains("geolocation=(self)"));
         let policy = header("content-security-policy");
         for part in [
             "default-src 'none'",

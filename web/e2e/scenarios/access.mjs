@@ -36,6 +36,11 @@ const pages = [
   { name: 'mail', path: '/mail', ready: (page) => page.getByRole('heading', { level: 1 }) },
   { name: 'webhooks', path: '/webhooks', ready: (page) => page.getByRole('heading', { level: 1 }) },
   { name: 'vessel', path: (vessel) => `/vessels/${vessel.id}`, ready: chart, drawn: curve },
+  ...['deviation', 'changes', 'adjustment', 'agent', 'settings'].map((tab) => ({
+    name: `vessel-${tab}`,
+    path: (vessel) => `/vessels/${vessel.id}/${tab}`,
+    ready: (page) => page.locator('main section h2').nth(1),
+  })),
   { name: 'schedule', path: '/schedule', ready: (page) => page.getByTestId('timeline') },
   {
     name: 'order',

@@ -4,7 +4,18 @@
  */
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
-import { phone, notSignedIn, signIn, struck, chart, curve, fitsItsWidth } from '../helpers.mjs';
+import {
+  phone,
+  notSignedIn,
+  signIn,
+  goToVessel,
+  openMenu,
+  openTab,
+  struck,
+  chart,
+  curve,
+  fitsItsWidth,
+} from '../helpers.mjs';
 
 /** The berth where she is adjusted, a day from her last sample at most, and how she lies. */
 const berth = { lat: 35.9, lon: 14.5, headingDeg: 40 };
@@ -119,12 +130,14 @@ export const adjusting = {
       await save.click();
       await panel.getByText(/^Revision 1, /).waitFor();
 
+      await openTab(page, 'Settings');
       const particulars = page.getByRole('region', { name: 'Particulars' });
       await particulars.getByRole('button', { name: /Amend… Compass/ }).click();
       await particulars.getByLabel('Maker and type').fill('Reflecta 1');
       await particulars.getByRole('button', { name: 'Save' }).click();
       await particulars.getByText('Reflecta 1').waitFor();
 
+      await openTab(page, 'Adjustment');
       const orders = page.getByRole('region', { name: 'Adjustment' });
       await orders.getByRole('link', { name: 'Order an adjustment' }).click();
       const order = page.getByRole('button', { name: 'Order it' });
@@ -394,6 +407,7 @@ export const adjusting = {
         await other.getByLabel('E-mail').fill(settings.adjuster);
         await other.getByLabel('Password').fill(settings.password);
         await other.getByRole('button', { name: 'Sign in' }).click();
+        await openMenu(other);
         await other.getByRole('link', { name: 'Work orders' }).click();
         await other.getByRole('row').filter({ hasText: name }).getByRole('link').click();
         await other.getByRole('heading', title).waitFor();
@@ -497,7 +511,9 @@ export const adjusting = {
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
       const vessel = await calm(page);
-      await page.goto(`/vessels/${vessel.id}`);
+      await goToVessel(page, vessel.id);
+      await page.getByText(/^none: foretold by work order .*, fitted to no sample$/).waitFor();
+      await openTab(page, 'Deviation');
       const deviation = page.getByRole('region', { name: 'Deviation', exact: true });
       const said = deviation.getByTestId('foretold');
       await said.getByText('Predicted, not verified at sea').waitFor();
@@ -507,7 +523,6 @@ export const adjusting = {
       await curve(page).waitFor();
       assert.equal(await chart(page).getAttribute('data-dots'), '0');
       assert.equal(await chart(page).locator('svg .dots path[d^="M"]').count(), 0);
-      await page.getByText(/^none: foretold by work order .*, fitted to no sample$/).waitFor();
       await page
         .getByRole('heading', { name: /^Table of deviations, predicted, not ver/ })
         .waitFor();
@@ -515,11 +530,11 @@ export const adjusting = {
       await trust.scrollIntoViewIfNeeded();
       await trust.getByText('Predicted, not verified at sea').waitFor();
       assert.doesNotMatch(await trust.innerText(), /independent errors|Only one/);
-      const changes = page.getByRole('region', { name: 'What changed' });
-      await changes.scrollIntoViewIfNeeded();
-      await changes.getByText('Its curve is foretold by the adjustment').waitFor();
       await fitsItsWidth(page);
       await shoot('vessel-foretold', { fullPage: true });
+      await openTab(page, 'Changes');
+      const changes = page.getByRole('region', { name: 'What changed' });
+      await changes.getByText('Its curve is foretold by the adjustment').waitFor();
       await page.setViewportSize(phone);
       await fitsItsWidth(page);
     },

@@ -210,7 +210,7 @@ export const alerts = {
         const card = page.getByRole('article').filter({ hasText: `${name}: Deviation over` });
         await card.locator('time').getByText(by(clocks)).waitFor();
         await shoot(`alerts-${clocks}`, {}, card.first());
-        await page.goto(`/vessels/${id}`);
+        await page.goto(`/vessels/${id}/changes`);
         const entry = page.getByTestId('logbook').locator('li', { hasText: data.note });
         await entry.locator('.when').getByText(by(clocks)).waitFor();
         const line = page.getByTestId('timeline').locator('li', { hasText: 'Reported: ' });
@@ -221,7 +221,7 @@ export const alerts = {
         assert.match(said, clocks === 'both' ? / UTC\b/ : / UTC([+−]\d+)?$/);
       }
       await choose('UTC');
-      await page.goto(`/vessels/${id}`);
+      await page.goto(`/vessels/${id}/changes`);
       const entry = page.getByTestId('logbook').locator('li', { hasText: data.note });
       await entry
         .locator('.when')
@@ -307,7 +307,7 @@ export const alerts = {
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
       const vessel = await struck(page);
-      await goToVessel(page, vessel.id);
+      await goToVessel(page, vessel.id, '/changes');
       const changes = page.getByRole('region', { name: 'What changed' });
       const change = changes.getByRole('listitem').filter({ hasText: 'Lightning or a shock' });
       await change.first().waitFor();
@@ -362,7 +362,7 @@ export const alerts = {
       const { id: other } = await struck(page);
       const listed = await (await page.request.get('/api/v1/vessels')).json();
       const calm = listed.items.find((vessel) => vessel.model && vessel.id !== other);
-      await goToVessel(page, calm.id);
+      await goToVessel(page, calm.id, '/changes');
       const changes = page.getByRole('region', { name: 'What changed' });
       await changes.getByText(/^No change found since \d{1,2} [A-Z][a-z]{2} 20\d\d/).waitFor();
       await shoot('changes-none', {}, changes);
@@ -377,10 +377,11 @@ export const alerts = {
       await signIn(page, settings);
       const vessel = await withModel(page);
       await limit(page, vessel.id, { deviation_deg: 1.5 });
-      await page.getByTestId('alert-badge').waitFor();
+      const badge = page.getByTestId('alert-badge-short');
+      await badge.waitFor();
       await fitsItsWidth(page);
       await shoot('vessels-alerts-phone', { fullPage: true });
-      await page.getByRole('link', { name: /^Alerts/ }).click();
+      await badge.click();
       await page.getByRole('article').first().waitFor();
       await fitsItsWidth(page);
       await shoot('alerts-phone', { fullPage: true });

@@ -1,6 +1,6 @@
 /** Azimuths: the compass error by the sun and by a transit. */
 import assert from 'node:assert/strict';
-import { fitsItsWidth, notSignedIn, openVessel, signIn } from '../helpers.mjs';
+import { fitsItsWidth, notSignedIn, openTab, openVessel, signIn } from '../helpers.mjs';
 
 export const azimuths = {
   'an azimuth shows its errors at once, stands in the book, and is withdrawn': {
@@ -9,6 +9,7 @@ export const azimuths = {
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
       await openVessel(page);
+      await openTab(page, 'Deviation');
       const panel = page.getByRole('region', { name: 'Azimuths' });
       await panel.getByText('No azimuth has been entered yet').waitFor();
 

@@ -7,6 +7,7 @@ import {
   phone,
   signIn,
   goToVessel,
+  openTab,
   withModel,
 } from '../helpers.mjs';
 
@@ -148,10 +149,10 @@ export const fleet = {
       assert.equal(needs, 0, 'a vessel of which it is not known needs nothing');
       await shoot('fleet-dues-unknown');
       await goToVessel(page, id);
-      await page.getByText('What she needs could not be found out in full').waitFor();
+      await page.getByText('What is needed could not be found out in full').waitFor();
       await page.unrouteAll();
       await page.getByRole('button', { name: 'Try again' }).click();
-      await page.getByText('What she needs could not be found out').waitFor({ state: 'detached' });
+      await page.getByText('What is needed could not be found out').waitFor({ state: 'detached' });
     },
   },
 
@@ -185,6 +186,7 @@ export const fleet = {
       await page.getByLabel('Name', { exact: true }).fill(name);
       await page.getByRole('button', { name: 'Add vessel' }).click();
       await page.getByRole('rowheader').getByRole('link', { name }).click();
+      await openTab(page, 'Settings');
       const particulars = page.getByRole('region', { name: 'Particulars' });
       await particulars.getByRole('button', { name: 'Take her out of service…' }).click();
       await shoot('vessel-out-of-service-asked');
@@ -192,6 +194,7 @@ export const fleet = {
       await page.getByText(/^Out of service since/).waitFor();
       await shoot('vessel-out-of-service');
 
+      await openTab(page, 'Overview');
       await page.getByText('nothing is due').waitFor();
 
       await page.getByRole('link', { name: '← Fleet' }).click();
@@ -199,6 +202,7 @@ export const fleet = {
       assert.ok(!(await names(page)).includes(name));
       await page.getByText('Vessels out of service').click();
       await page.getByRole('listitem').getByRole('link', { name }).click();
+      await openTab(page, 'Settings');
       await particulars.getByRole('button', { name: 'Take her back into service' }).click();
       await particulars.getByRole('button', { name: 'Take her out of service…' }).waitFor();
       assert.equal(await page.getByText(/^Out of service since/).count(), 0);

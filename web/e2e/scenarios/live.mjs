@@ -12,7 +12,7 @@ export const live = {
         const page = await context.newPage();
         await signIn(page, settings);
         const { id } = await withModel(page);
-        await page.goto(`/vessels/${id}`);
+        await page.goto(`/vessels/${id}/changes`);
         const logbook = page.getByRole('region', { name: 'Logbook' });
         await logbook.getByRole('button', { name: 'Report' }).waitFor();
         const banner = page.getByRole('banner');

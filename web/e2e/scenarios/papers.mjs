@@ -1,6 +1,14 @@
 /** The deviation card and the deviation book. */
 import assert from 'node:assert/strict';
-import { phone, notSignedIn, signIn, goToVessel, openVessel, fitsItsWidth } from '../helpers.mjs';
+import {
+  phone,
+  notSignedIn,
+  signIn,
+  goToVessel,
+  openTab,
+  openVessel,
+  fitsItsWidth,
+} from '../helpers.mjs';
 
 /** A card that is refused is a 409 in the console. */
 const refused = /status of 409 .*\/card\.json/;
@@ -21,6 +29,7 @@ export const papers = {
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
       await openVessel(page);
+      await openTab(page, 'Deviation');
       const card = cardOf(page);
       await card.getByRole('button', { name: 'Make the card' }).click();
       const made = card.getByTestId('card');
@@ -48,6 +57,7 @@ export const papers = {
     async run({ page, settings }) {
       await signIn(page, settings);
       await openVessel(page);
+      await openTab(page, 'Deviation');
       await page.getByRole('button', { name: 'Choose another place' }).click();
       await page.getByLabel('Latitude', { exact: true }).fill('48 S');
       await page.getByLabel('Longitude').fill('020 E');
@@ -92,8 +102,9 @@ export const papers = {
         }),
       );
       await goToVessel(page, vessel.id);
-      const needs = page.getByRole('region', { name: 'What she needs' });
+      const needs = page.getByRole('region', { name: 'Needs' });
       await needs.locator(`a[href="/alerts#${id}"]`).waitFor();
+      await openTab(page, 'Deviation');
       const card = cardOf(page);
       await card.scrollIntoViewIfNeeded();
       await card.getByRole('button', { name: 'Make the card' }).click();
@@ -112,6 +123,7 @@ export const papers = {
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
       await openVessel(page);
+      await openTab(page, 'Deviation');
       const book = bookOf(page);
       const whole = await (await fetched(page, book.getByRole('link', { name: /CSV/ }))).text();
       const times = whole

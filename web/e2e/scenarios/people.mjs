@@ -10,7 +10,15 @@ import {
 import { readFile } from 'node:fs/promises';
 import { encode } from 'uqr';
 import { findings } from '../axe.mjs';
-import { atAnyHour, fitsItsWidth, notSignedIn, phone, signIn, struck } from '../helpers.mjs';
+import {
+  atAnyHour,
+  fitsItsWidth,
+  notSignedIn,
+  openMenu,
+  phone,
+  signIn,
+  struck,
+} from '../helpers.mjs';
 
 /** RFC 6238 with what authenticator apps use: SHA-1, 30 s, six digits. */
 function codeNow(secret) {
@@ -97,7 +105,8 @@ export const people = {
       await theirs.getByRole('button', { name: 'Set password' }).click();
       await theirs.getByText(`Your password is set. Sign in as ${email}.`).waitFor();
       await signInAs(theirs, { email, password: 'gangway lantern 1867 brass' }, 'Fleet');
-      await theirs.getByRole('link', { name: 'Settings' }).click();
+      await openMenu(theirs);
+      await theirs.getByRole('link', { name: 'Settings', exact: true }).click();
       const factor = theirs.getByRole('region', { name: 'Second factor' });
       await factor.getByLabel('Your password').fill('gangway lantern 1867 brass');
       await factor.getByRole('button', { name: 'Set it up' }).click();

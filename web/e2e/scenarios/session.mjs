@@ -1,6 +1,16 @@
 /** Coming in, going out, and what lies between. */
 import assert from 'node:assert/strict';
-import { notSignedIn, signIn, openVessel } from '../helpers.mjs';
+import { findings } from '../axe.mjs';
+import {
+  fitsItsWidth,
+  notSignedIn,
+  openMenu,
+  openTab,
+  openVessel,
+  phone,
+  signIn,
+  withModel,
+} from '../helpers.mjs';
 
 export const session = {
   'a wrong password is refused in words': {
@@ -73,6 +83,7 @@ export const session = {
     async run({ page, context, settings }) {
       await signIn(page, settings);
       await openVessel(page);
+      await openTab(page, 'Deviation');
       await context.setOffline(true);
       await page.getByRole('button', { name: 'Choose another place' }).click();
       await page.getByRole('button', { name: 'Show', exact: true }).click();
@@ -110,6 +121,7 @@ export const session = {
       assert.ok(items.some(({ provider }) => provider === 'Test Lines'));
       const me = await (await page.request.get('/api/v1/me')).json();
       assert.equal(me.email, settings.email);
+      await openMenu(page);
       await page.getByRole('button', { name: 'Sign out' }).click();
       await page.getByRole('button', { name: 'Sign in' }).waitFor();
     },
@@ -135,10 +147,74 @@ export const session = {
     },
   },
 
+  'a vessel, a tab of it, a setting and a passage of the help are found by keys': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const { id, name } = await withModel(page);
+      await page.getByRole('rowheader').first().waitFor();
+      await page.keyboard.press('/');
+      const box = page.getByRole('combobox', { name: 'Vessel, port, work order' });
+      await box.and(page.locator(':focus')).waitFor();
+      await page.keyboard.type(name.toUpperCase());
+      const options = page.getByRole('listbox', { name: 'Found' }).getByRole('option');
+      await options.filter({ hasText: `${name}: Changes` }).waitFor();
+      await shoot('finder');
+      assert.deepEqual(await findings(page), []);
+      await page.keyboard.press('Enter');
+      await page.getByRole('heading', { name, level: 1 }).waitFor();
+      await page.keyboard.press('Control+k');
+      await page.keyboard.type(`${name} chang`);
+      await options.first().getByText(`${name}: Changes`).waitFor();
+      await page.keyboard.press('Enter');
+      await page.waitForURL(`**/vessels/${id}/changes`);
+      await page.keyboard.press('Control+k');
+      await page.keyboard.type('no such thing');
+      await page.getByText('Nothing is called “no such thing”.').waitFor();
+      await page.keyboard.press('Escape');
+      await box.waitFor({ state: 'detached' });
+      await page.keyboard.press('Control+k');
+      await page.keyboard.type('help');
+      await page.keyboard.press('Enter');
+      await page.getByRole('heading', { name: 'Help', level: 1 }).waitFor();
+      await page.getByLabel('Search the help').fill('uncertain card');
+      await page
+        .getByRole('link', { name: /^Deviation card and deviation book/ })
+        .last()
+        .click();
+      await page.getByRole('heading', { name: /^Deviation card/, level: 1 }).waitFor();
+      await shoot('help', { fullPage: true });
+      assert.deepEqual(await findings(page), []);
+      await page.setViewportSize(phone);
+      await fitsItsWidth(page);
+    },
+  },
+
+  'a phone has one line of header, and the rest in a menu': {
+    viewport: phone,
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const header = page.getByRole('banner');
+      assert.ok((await header.boundingBox()).height < 64, 'the header is one line');
+      assert.equal(await header.getByRole('link', { name: 'Schedule' }).count(), 0);
+      await openMenu(page);
+      await shoot('menu-phone');
+      assert.deepEqual(await findings(page), []);
+      await header.getByRole('link', { name: 'Schedule' }).click();
+      await page.getByRole('heading', { name: 'Schedule', level: 1 }).waitFor();
+      assert.ok((await header.boundingBox()).height < 64, 'the menu closes');
+      await openMenu(page);
+      await page.keyboard.press('Escape');
+      await header.getByRole('link', { name: 'Schedule' }).waitFor({ state: 'detached' });
+    },
+  },
+
   'signing out ends the session': {
     allowedErrors: [notSignedIn],
     async run({ page, settings }) {
       await signIn(page, settings);
+      await openMenu(page);
       await page.getByRole('button', { name: 'Sign out' }).click();
       await page.getByRole('button', { name: 'Sign in' }).waitFor();
       await page.goto('/');

@@ -6,6 +6,7 @@ import {
   signIn,
   goToVessel,
   openVessel,
+  openTab,
   chart,
   curve,
   fitsItsWidth,
@@ -46,6 +47,7 @@ export const vessel = {
       );
       assert.match(await page.getByTestId('worst').innerText(), /^\d+\.\d° [EW]$|^0\.0°$/);
 
+      await openTab(page, 'Deviation');
       const rows = page.getByTestId('deviation-table').locator('tbody tr');
       assert.equal(await rows.count(), 24);
       for (const [index, start] of [
@@ -58,12 +60,6 @@ export const vessel = {
         assert.match(row, /\d+\.\d°( [EW])?\s+± \d+\.\d°\s+\d{3}\.\d°/);
       }
 
-      const residuals = page.getByTestId('residual-chart');
-      await residuals.waitFor();
-      assert.equal(await residuals.locator('svg').count(), 0, 'drawn only when it is near');
-      await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
-      await residuals.locator('svg').first().waitFor();
-      assert.ok((await dots(residuals)) > 100, 'on paper it is drawn all the same');
       const rose = page.getByTestId('coverage-rose');
       assert.match(await rose.getAttribute('aria-label'), /^Samples by compass heading/);
       assert.ok((await rose.locator('path.cell').count()) >= 24, 'the rose has its sectors');
@@ -95,43 +91,59 @@ export const vessel = {
       await magnetism.getByText('Headings cannot tell the constant from A').waitFor();
       await shoot('parameters', {}, magnetism);
       await page.getByRole('heading', { name: 'Coefficients' }).waitFor();
-      await page.getByText('accepted', { exact: true }).first().waitFor();
       await fitsItsWidth(page);
       await shoot('vessel', { fullPage: true });
+
+      await openTab(page, 'Changes');
+      const residuals = page.getByTestId('residual-chart');
+      await residuals.waitFor();
+      assert.equal(await residuals.locator('svg').count(), 0, 'drawn only when it is near');
+      await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+      await residuals.locator('svg').first().waitFor();
+      assert.ok((await dots(residuals)) > 100, 'on paper it is drawn all the same');
+      await openTab(page, 'Agent');
+      await page.getByText('accepted', { exact: true }).first().waitFor();
     },
   },
 
-  'each part of her page is one step away, on a phone and by keys': {
+  'the page says what to do first, and each tab has its address, on a phone and by keys': {
     viewport: phone,
     allowedErrors: [notSignedIn],
-    async run({ page, settings }) {
+    async run({ page, settings, shoot }) {
       await signIn(page, settings);
       await openVessel(page);
-      const contents = page.getByRole('navigation', { name: 'On this page' });
-      const links = await contents.getByRole('link').all();
-      for (const link of links) {
-        const id = (await link.getAttribute('href')).slice(1);
-        await page.locator(`section#${id}`).waitFor({ state: 'attached' });
-      }
-      assert.ok(links.length >= 14, `${links.length} parts`);
-      await page.locator('#deviation').evaluate((part) => (part.dataset.same = 'yes'));
-      const seen = (id) =>
-        page.waitForFunction((id) => {
-          const { bottom } = document
-            .querySelector('nav[aria-label="On this page"]')
-            .getBoundingClientRect();
-          const { top } = document.getElementById(id).getBoundingClientRect();
-          return top >= bottom && top < innerHeight / 2;
-        }, id);
-      await contents.getByRole('link', { name: 'Logbook' }).click();
-      await seen('logbook');
-      // It is still at hand there, and the page is the one that was there.
-      await contents.getByRole('link', { name: 'Changes' }).focus();
+      const now = page.getByTestId('now');
+      const said = await now.boundingBox();
+      assert.ok(said.y + said.height < phone.height, 'what to do is on the first screen');
+      await shoot('vessel-now-phone');
+      const tabs = page.getByRole('navigation', { name: 'About the vessel' });
+      assert.equal(await tabs.getByRole('link').count(), 6);
+      const path = new URL(page.url()).pathname;
+      await tabs.getByRole('link', { name: 'Changes' }).focus();
       await page.keyboard.press('Enter');
-      await seen('changes');
+      await page.waitForURL(`**${path}/changes`);
+      // The keyboard stays where it was, and Tab leads on.
+      assert.equal(await page.evaluate(() => document.activeElement?.dataset.tab), 'changes');
+      await page.getByRole('region', { name: 'Deviation over time' }).waitFor();
+      await page
+        .getByRole('navigation', { name: 'On this page' })
+        .getByRole('link', { name: 'Logbook' })
+        .click();
+      await page.waitForFunction(() => {
+        const { bottom } = document
+          .querySelector('nav[aria-label="About the vessel"]')
+          .getBoundingClientRect();
+        const { top } = document.getElementById('logbook').getBoundingClientRect();
+        return top >= bottom && top < innerHeight / 2;
+      });
       await page.goBack();
-      await seen('logbook');
-      assert.equal(await page.locator('#deviation').getAttribute('data-same'), 'yes');
+      await page.goBack();
+      await page.waitForURL(`**${path}`);
+      await page.getByRole('region', { name: 'Needs' }).waitFor();
+      // Addresses from before the tabs lead to the tab that has the panel.
+      await page.goto(`${path}#binnacle`);
+      await page.waitForURL(`**${path}/adjustment#binnacle`);
+      await page.getByRole('region', { name: 'Binnacle and correctors' }).waitFor();
       await fitsItsWidth(page);
     },
   },
@@ -141,6 +153,7 @@ export const vessel = {
     async run({ page, settings }) {
       await signIn(page, settings);
       await openVessel(page);
+      await openTab(page, 'Deviation');
       const before = await curve(page).getAttribute('d');
       await page.getByRole('button', { name: 'Choose another place' }).click();
       await page.getByLabel('Latitude', { exact: true }).fill('95 N');
@@ -174,6 +187,8 @@ export const vessel = {
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
       await openVessel(page);
+      await openTab(page, 'Deviation');
+      await curve(page).waitFor();
       const panel = page.getByRole('region', { name: 'Deviation', exact: true });
       const card = page.getByRole('region', { name: 'Deviation card' });
       await card.getByRole('button', { name: 'Make the card' }).click();
@@ -217,13 +232,24 @@ export const vessel = {
     },
   },
 
-  'what happened stands on one axis with the residuals, for the keyboard too': {
+  'a strike is a step in the deviation over time, with what happened on one axis, by keys too': {
     allowedErrors: [notSignedIn],
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
       const hit = await struck(page);
-      await page.goto(`/vessels/${hit.id}`);
-      const panel = page.getByRole('region', { name: 'Residuals over time' });
+      await page.goto(`/vessels/${hit.id}/changes`);
+      const panel = page.getByRole('region', { name: 'Deviation over time' });
+      const drawn = panel.getByTestId('history-chart');
+      assert.match(await drawn.getByRole('img').getAttribute('aria-label'), /with one change\./);
+      await panel.getByText('Deviation as a table').press('Enter');
+      const epochs = panel.getByRole('table', { name: /Deviation on each heading/ });
+      const east = (row) => epochs.getByRole('row').nth(row).getByRole('cell').nth(3).innerText();
+      const [before, after] = [await east(1), await east(2)].map(
+        (cell) => parseFloat(cell) * (/ W/.test(cell) ? -1 : 1),
+      );
+      assert.ok(Math.abs(after - before) > 1, `on 090° ${before} and then ${after}`);
+      await panel.getByRole('button', { name: '060°' }).click();
+      await epochs.getByRole('columnheader', { name: '060°' }).waitFor();
       const lanes = panel.getByTestId('time-lanes');
       const epoch = lanes.getByRole('button', { name: /^Epoch 1, / });
       await epoch.focus();
@@ -266,7 +292,7 @@ export const vessel = {
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
       const { id } = await struck(page);
-      await page.goto(`/vessels/${id}#residuals`);
+      await page.goto(`/vessels/${id}#history`);
       await page.getByTestId('time-lanes').getByRole('listitem').first().waitFor();
       // Sheets and their margins differ; how wide a panel is on one, only the printer knows.
       for (const width of [560, 718, 760]) {
@@ -277,14 +303,14 @@ export const vessel = {
           found.evaluateAll((all) =>
             Math.max(...all.map((node) => node.getBoundingClientRect().right)),
           );
-        const chartEnds = await right(page.getByTestId('residual-chart').locator('svg'));
+        const chartEnds = await right(page.getByTestId('history-chart').locator('svg'));
         const lanesEnd = await right(page.getByTestId('time-lanes').getByRole('listitem'));
         assert.ok(
           lanesEnd <= chartEnds && lanesEnd > chartEnds - 40,
           `at ${width} px the lanes end at ${lanesEnd}, the chart at ${chartEnds}`,
         );
         await fitsItsWidth(page);
-        await shoot(`residuals-on-paper-${width}`, {}, page.locator('#residuals'));
+        await shoot(`history-on-paper-${width}`, {}, page.locator('#history'));
         await page.evaluate(() => dispatchEvent(new Event('afterprint')));
         await page.emulateMedia({ media: 'screen' });
       }
@@ -315,7 +341,7 @@ export const vessel = {
         }).observe({ type: 'layout-shift', buffered: true });
       });
       await page.goto(`/vessels/${id}`);
-      await page.getByTestId('residual-chart').waitFor({ state: 'attached' });
+      await chart(page).waitFor({ state: 'attached' });
       assert.ok(late > 0, 'nothing came late');
       const moved = await page.evaluate(() => window.moved);
       assert.ok(moved < 0.005, `the layout shifted by ${moved}`);
@@ -327,6 +353,7 @@ export const vessel = {
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
       await openVessel(page);
+      await openTab(page, 'Changes');
       const logbook = page.getByRole('region', { name: 'Logbook' });
       await logbook.getByText('Nothing has been reported yet').waitFor();
       await shoot('logbook-empty', {}, logbook);
@@ -392,6 +419,7 @@ export const vessel = {
     async run({ page, settings }) {
       await signIn(page, settings);
       await openVessel(page);
+      await openTab(page, 'Changes');
       const logbook = page.getByRole('region', { name: 'Logbook' });
       let release = () => undefined;
       const released = new Promise((resolve) => (release = resolve));
@@ -440,7 +468,7 @@ export const vessel = {
           note: words,
         });
       await note(1, 'The oldest');
-      await goToVessel(page, id);
+      await goToVessel(page, id, '/changes');
       const logbook = page.getByRole('region', { name: 'Logbook' });
       const oldest = logbook.getByRole('listitem').filter({ hasText: 'The oldest' });
       await oldest.getByRole('button', { name: /^Amend/ }).click();
@@ -466,6 +494,7 @@ export const vessel = {
     async run({ page, settings }) {
       await signIn(page, settings);
       await openVessel(page);
+      await openTab(page, 'Agent');
       await page.getByRole('button', { name: 'Make a code' }).click();
       const code = await page.getByTestId('enrolment-code').innerText();
       assert.ok(code.length >= 8, 'the code is shown');
@@ -491,10 +520,12 @@ export const vessel = {
       await page.getByRole('link', { name: 'Browser Test' }).first().click();
       await page.getByTestId('no-model').getByText('No model yet').waitFor();
       await page.getByTestId('no-model').getByText('No sample has been analysed yet').waitFor();
+      await shoot('new-vessel', { fullPage: true });
+      await openTab(page, 'Deviation');
       await page.getByText('No samples yet.').waitFor();
+      await openTab(page, 'Agent');
       await page.getByText('No agent has been enrolled').waitFor();
       await fitsItsWidth(page);
-      await shoot('new-vessel', { fullPage: true });
     },
   },
 
@@ -508,11 +539,17 @@ export const vessel = {
       await shoot('vessels-phone', { fullPage: true });
       await openVessel(page);
       await chart(page).locator('svg .dots path').first().waitFor({ state: 'attached' });
-      await page.getByTestId('coverage-table').waitFor();
       await fitsItsWidth(page);
       await shoot('vessel-phone', { fullPage: true });
+      await openTab(page, 'Deviation');
+      await page.getByTestId('coverage-table').waitFor();
+      await fitsItsWidth(page);
+      await shoot('deviation-phone', { fullPage: true });
       await shoot('trust-phone', {}, page.locator('#trust'));
       await shoot('parameters-phone', {}, page.locator('#parameters'));
+      await openTab(page, 'Changes');
+      await fitsItsWidth(page);
+      await shoot('history-phone', {}, page.locator('#history'));
       const logbook = page.getByRole('region', { name: 'Logbook' });
       await logbook.getByRole('button', { name: 'Report' }).click();
       await fitsItsWidth(page);

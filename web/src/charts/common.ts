@@ -14,9 +14,20 @@ export const colours = {
   surface: 'var(--surface)',
 } as const;
 
+/** One for each heading drawn over time, and again from the first. */
+export const historyColours = [
+  'var(--curve)',
+  'var(--sample)',
+  'var(--good)',
+  'var(--notable)',
+  'var(--ink-soft)',
+  'var(--bad)',
+] as const;
+
 /** Known before the drawing is, so that its room can be kept. */
 export const comparedHeight = (width: number): number => (width < 520 ? 280 : 340);
 export const deviationHeight = (width: number): number => (width < 520 ? 300 : 410);
+export const historyHeight = (width: number): number => (width < 520 ? 300 : 380);
 export const residualsHeight = (width: number): number => (width < 520 ? 236 : 276);
 
 /** `4° E`, `0°`, `2.5° W` */

@@ -2,4 +2,5 @@
 
 export { drawCompared } from './compared';
 export { drawDeviation } from './deviation';
+export { drawHistory } from './history';
 export { drawResiduals } from './residuals';

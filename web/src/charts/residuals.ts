@@ -8,7 +8,7 @@ import type { Mark, Range } from '../timeline';
 import { colours, residualsHeight, sideTick, spanned } from './common';
 import { crosses, dots } from './dots';
 
-/** What the axis holds besides residuals. */
+/** What a time axis holds besides what was measured. */
 export interface Axis {
   range: Range;
   /** Changes that were found. */
@@ -21,11 +21,10 @@ export function drawResiduals(
   residuals: Residual[],
   intervals: Interval[],
   width: number,
-  { range, steps, shown }: Axis,
+  { range, steps }: Omit<Axis, 'shown'>,
 ): Element {
   const middle = (interval: Interval) =>
     new Date((interval.from.getTime() + interval.to.getTime()) / 2);
-  const span = range.toMs - range.fromMs;
   const at = (used: boolean) =>
     residuals
       .filter((residual) => residual.used === used)
@@ -63,12 +62,6 @@ export function drawResiduals(
       labelArrow: 'none',
     },
     marks: [
-      Plot.rectX(shown ? [shown] : [], {
-        x1: (mark: Mark) => new Date(mark.fromMs),
-        x2: (mark: Mark) => new Date(Math.max(mark.toMs, mark.fromMs + leastShown * span)),
-        fill: colours.curve,
-        fillOpacity: 0.12,
-      }),
       Plot.gridY({ ticks: 5, stroke: colours.grid, strokeOpacity: 1 }),
       Plot.ruleY([0], { stroke: colours.axis }),
       Plot.ruleX(steps, {
@@ -90,6 +83,3 @@ export function drawResiduals(
     ],
   });
 }
-
-/** An instant that is looked at is drawn so wide, as a share of the axis. */
-const leastShown = 0.004;

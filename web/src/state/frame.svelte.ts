@@ -1,10 +1,12 @@
-/** What the frame around the pages says of the connection, so that nothing says it twice. */
+/** What the frame around the pages shows: of the connection, so that nothing says it twice, and of itself. */
 
 import { untrack } from 'svelte';
 
 class FrameState {
   /** Since when there is no connection, while the frame says so. */
   without = $state.raw<Date | null>(null);
+  /** Whether a page wants a phone's whole screen, as at the binnacle. */
+  isBare = $state(false);
   #elsewhere = $state(0);
 
   /** Whether the page, or a part of it, says so itself. */

@@ -1,5 +1,7 @@
 /** Which page the address names, and moving between pages without reloading. */
 
+import { tabNamed, tabOf, type VesselPanel, type VesselTab } from '../vessel-tabs';
+
 /** Pages that are known by the first word of their address alone. */
 const plain = [
   'alerts',
@@ -27,17 +29,26 @@ const ofSettings = {
 export type Route =
   | { page: (typeof plain)[number] | (typeof ofSettings)[keyof typeof ofSettings] | 'settings' }
   | { page: 'vessels' | 'work-orders' | 'new-work-order' | 'not-found' }
-  | { page: 'vessel' | 'work-order'; id: string };
+  | { page: 'vessel'; id: string; tab: VesselTab }
+  | { page: 'work-order'; id: string }
+  | { page: 'help'; topic: string };
 
 export function parseRoute(path: string): Route {
   const [first, second, ...rest] = path.split('/').filter((part) => part !== '');
   if (first === undefined) return { page: 'vessels' };
   if (first === 'work-orders' && rest.length === 0) return workOrderRoute(second);
   if (first === 'settings' && rest.length === 0) return settingsRoute(second);
+  if (first === 'help' && rest.length === 0) return { page: 'help', topic: second ?? '' };
   const known = plain.find((page) => page === first);
   if (known && second === undefined) return { page: known };
-  if (first !== 'vessels' || rest.length > 0) return { page: 'not-found' };
-  return second === undefined ? { page: 'vessels' } : { page: 'vessel', id: second };
+  return first === 'vessels' ? vesselRoute(second, rest) : { page: 'not-found' };
+}
+
+function vesselRoute(id: string | undefined, [tab, ...rest]: string[]): Route {
+  if (id === undefined) return { page: 'vessels' };
+  if (tab === undefined) return { page: 'vessel', id, tab: 'overview' };
+  const named = rest.length === 0 ? tabNamed(tab) : undefined;
+  return named ? { page: 'vessel', id, tab: named } : { page: 'not-found' };
 }
 
 function settingsRoute(second: string | undefined): Route {
@@ -52,6 +63,14 @@ function workOrderRoute(id: string | undefined): Route {
 }
 
 export const vesselPath = (id: string): string => `/vessels/${encodeURIComponent(id)}`;
+export const vesselTabPath = (id: string, tab: VesselTab): string =>
+  tab === 'overview' ? vesselPath(id) : `${vesselPath(id)}/${tab}`;
+/** A panel of a vessel's page, on the tab that has it. */
+export const vesselPanelPath = (id: string, panel: VesselPanel): string =>
+  `${vesselTabPath(id, tabOf(panel) ?? 'overview')}#${panel}`;
+/** What changed at an instant, before and after, for one of the vessel's compasses. */
+export const changePath = (id: string, compass: string, at: string): string =>
+  `${vesselTabPath(id, 'changes')}?${new URLSearchParams({ compass, change: at }).toString()}#changes`;
 export const vesselsPath = '/';
 export const alertsPath = '/alerts';
 /** An alert among the others. */
@@ -62,9 +81,9 @@ export const schedulePath = '/schedule';
 /** What is planned for a compass, or why nothing is. */
 export const plannedPath = (compass: string): string => `${schedulePath}#${compass}`;
 export const binnaclesPath = '/binnacles';
-/** The binnacle of a vessel's compass, on her page. */
+/** The binnacle of a vessel's compass, on the vessel's page. */
 export const binnaclePath = (vessel: string, compass: string): string =>
-  `${vesselPath(vessel)}?${new URLSearchParams({ compass }).toString()}#binnacle`;
+  `${vesselTabPath(vessel, 'adjustment')}?${new URLSearchParams({ compass }).toString()}#binnacle`;
 export const firmsPath = '/firms';
 export const startPath = '/start';
 export const reportsPath = '/reports';
@@ -75,6 +94,10 @@ export const settingsPaths = Object.entries(ofSettings).map(([word, page]) => ({
   page,
   path: `/settings/${word}`,
 }));
+export const helpPath = '/help';
+/** A topic of the help, or one of its sections. */
+export const helpTopicPath = (topic: string, section?: string): string =>
+  `${helpPath}/${topic}${section === undefined ? '' : `#${section}`}`;
 export const workOrdersPath = '/work-orders';
 export const workOrderPath = (id: string): string => `/work-orders/${encodeURIComponent(id)}`;
 /** Where an adjustment is ordered, perhaps of a compass that is already known. */
@@ -91,19 +114,37 @@ class RouteState {
 
   /** Goes to a page as if a link to it had been followed. */
   go(path: string): void {
+    const before = this.current;
     history.pushState(null, '', path);
-    this.current = parseRoute(location.pathname);
+    this.#read();
+    const { current } = this;
+    // From tab to tab of one vessel the keyboard stays where it is.
+    if (before.page === 'vessel' && current.page === 'vessel' && before.id === current.id) return;
     scrollTo(0, 0);
     // As after a real change of page, the keyboard starts from the top again.
     document.getElementById('content')?.focus({ preventScroll: true });
   }
 
+  /** Takes over what the address names. */
+  #read(): void {
+    const named = parseRoute(location.pathname);
+    if (named.page === 'vessel') {
+      // Addresses from before the tabs name the panel alone.
+      const tab = tabOf(location.hash.slice(1)) ?? named.tab;
+      if (tab !== named.tab) {
+        named.tab = tab;
+        const path = vesselTabPath(named.id, tab);
+        history.replaceState(null, '', `${path}${location.search}${location.hash}`);
+      }
+    }
+    // A link within a page leads nowhere else: the page stays as it is.
+    if (JSON.stringify(named) !== JSON.stringify(this.current)) this.current = named;
+  }
+
   /** Follows the address bar, and takes over clicks on links within the dashboard. */
   start(): () => void {
     const read = () => {
-      const named = parseRoute(location.pathname);
-      // A link within a page leads nowhere else: the page stays as it is.
-      if (JSON.stringify(named) !== JSON.stringify(this.current)) this.current = named;
+      this.#read();
     };
     const click = (event: MouseEvent) => {
       if (event.defaultPrevented || event.button !== 0) return;

@@ -1,8 +1,8 @@
 /**
  * All that one vessel's page shows, and how it is asked for.
  *
- * What always holds: what is seen first is asked for first; what is about a compass is that
- * of the one chosen, her first until then.
+ * What always holds: what is seen first is asked for first, and what stands on a tab when
+ * that is opened; what is about a compass is that of the one chosen, her first until then.
  */
 
 import {
@@ -43,6 +43,7 @@ import type {
 } from '../api/types';
 import { inOrder } from '../orders/order';
 import { foretoldOf } from '../science/foretold';
+import type { VesselTab } from '../vessel-tabs';
 import { whereabouts, type At } from '../whereabouts';
 import { PlacedDeviation } from './placed.svelte';
 import { Resource } from './resource.svelte';
@@ -53,6 +54,18 @@ const dayMs = 86_400_000;
 const logbookStep = 20;
 /** A fleet that catches up sends many batches; the page follows at its own pace. */
 const [lightMs, heavyMs] = [1_500, 3_000];
+
+/** Parts that are about the compass chosen, and those about the vessel. */
+const ofCompass = ['model', 'curve', 'coverage', 'timeline', 'picture', 'happened'] as const;
+type Part = (typeof ofCompass)[number] | 'agents' | 'logbook' | 'azimuths';
+const partsOf: Record<VesselTab, readonly Part[]> = {
+  overview: ['model', 'curve', 'picture'],
+  deviation: ['model', 'curve', 'picture', 'coverage', 'happened', 'azimuths'],
+  changes: ['model', 'timeline', 'picture', 'happened', 'logbook'],
+  adjustment: ['model'],
+  agent: ['agents'],
+  settings: [],
+};
 
 export class ShownVessel {
   vessel = new Resource<Vessel>();
@@ -118,7 +131,41 @@ export class ShownVessel {
   loadLogbook = () => this.logbook.load(() => listLogbook(this.id, this.#logbookLines));
   loadAzimuths = () => this.azimuths.load(() => listAzimuths(this.id, this.#azimuthLines));
 
-  /** All of it; what is seen first is drawn before the rest is asked for. */
+  #loadHappened = () =>
+    this.happened.load(async () => {
+      const [entries, calls] = await Promise.all([
+        listLogbookSince(this.id, this.#since()),
+        listCallsSince(this.id, this.#since()),
+      ]);
+      return { entries, calls };
+    });
+
+  /** What belongs to the compass that is chosen, by name. */
+  #ofCompass = {
+    model: this.loadModel,
+    curve: () => {
+      this.placed.reload();
+    },
+    coverage: this.loadCoverage,
+    timeline: this.loadTimeline,
+    picture: this.loadPicture,
+    happened: this.#loadHappened,
+  };
+  #ofVessel = { agents: this.loadAgents, logbook: this.loadLogbook, azimuths: this.loadAzimuths };
+
+  /** What was asked for: what stands on a tab that was opened. */
+  #wanted = new Set<Part>();
+  /** Whether it is known which vessel and compass it is about. */
+  #found = false;
+
+  /** Asks for what stands on a tab, unless that is there. */
+  open(tab: VesselTab): void {
+    const parts = partsOf[tab].filter((part) => !this.#wanted.has(part));
+    for (const part of parts) this.#wanted.add(part);
+    if (this.#found) this.#ask(parts);
+  }
+
+  /** What stands above all tabs, and then what stands on those that were opened. */
   loadAll = async (): Promise<void> => {
     const needed = this.loadNeeds();
     void this.glance.load(() => findAtAGlance(this.id));
@@ -128,33 +175,32 @@ export class ShownVessel {
     // What is not hers is as if it were not named.
     this.compass ??= this.vessel.value.compasses.find(({ id }) => id === this.#named)?.id;
     await needed;
+    // What is seen first is drawn before the rest is asked for.
     await new Promise((drawn) => setTimeout(drawn));
-    this.#loadScience();
-    void this.loadAgents();
-    void this.loadLogbook();
-    void this.loadAzimuths();
+    this.#found = true;
+    this.#ask([...this.#wanted]);
     // Only what is due is planned.
     if (this.needs.value?.length) void this.loadPlan();
   };
 
   /** Keeps it up to date until the function it returns is called. */
   follow(): () => void {
+    const again = (parts: readonly Part[]) => {
+      this.#ask(parts.filter((part) => this.#wanted.has(part)));
+    };
     const light = gathered(() => {
       void this.loadVessel();
-      void this.loadAgents();
+      again(['agents']);
     }, lightMs);
     const heavy = gathered(() => {
       void this.loadNeeds();
-      this.#loadScience();
+      again(ofCompass);
     }, heavyMs);
     const stop = live.listen((news) => {
       if (news.vesselId !== null && news.vesselId !== this.id) return;
       light.call();
-      if (news.kind === 'logbook' || news.kind === 'all') {
-        void this.loadLogbook();
-        void this.loadAzimuths();
-      }
-      if (['logbook', 'port_call'].includes(news.kind)) void this.#loadHappened();
+      if (news.kind === 'logbook' || news.kind === 'all') again(['logbook', 'azimuths']);
+      if (['logbook', 'port_call'].includes(news.kind)) again(['happened']);
       if (news.kind === 'work_order' || news.kind === 'all') {
         void this.loadOrders();
         void this.loadPlan();
@@ -173,9 +219,9 @@ export class ShownVessel {
   chooseCompass = (chosen: string): void => {
     this.compass = chosen;
     const { model, prior, placed, picture, coverage, timeline } = this;
-    const ofCompass = [model, prior, placed, picture, coverage, timeline];
-    for (const resource of ofCompass) resource.clear();
-    this.#loadScience();
+    const resources = [model, prior, placed, picture, coverage, timeline];
+    for (const resource of resources) resource.clear();
+    this.#ask(ofCompass.filter((part) => this.#wanted.has(part)));
   };
 
   choosePeriod = (days: number): void => {
@@ -194,28 +240,15 @@ export class ShownVessel {
     void this.loadAzimuths();
   };
 
-  #loadScience(): void {
-    void this.loadModel();
-    this.placed.reload();
-    void this.loadCoverage();
-    void this.loadTimeline();
-    void this.loadPicture();
-    void this.#loadHappened();
+  #ask(parts: readonly Part[]): void {
+    const load = { ...this.#ofCompass, ...this.#ofVessel };
+    for (const part of parts) void load[part]();
   }
 
   async #loadForetelling(): Promise<void> {
     const by = this.model.value?.foretold_by;
     if (by) await this.#foretelling.load(() => findOrder(by));
   }
-
-  #loadHappened = () =>
-    this.happened.load(async () => {
-      const [entries, calls] = await Promise.all([
-        listLogbookSince(this.id, this.#since()),
-        listCallsSince(this.id, this.#since()),
-      ]);
-      return { entries, calls };
-    });
 
   /** Counted back from what there is: recorded data may be of years ago. */
   #since(): string {

@@ -5,13 +5,19 @@ import type { Place } from '../api/client';
 import type { DeviationTable } from '../api/types';
 import { PlacedDeviation } from './placed.svelte';
 import { kept, Resource } from './resource.svelte';
-import { parseRoute } from './route.svelte';
+import { parseRoute, vesselPanelPath } from './route.svelte';
 
 describe('addresses', () => {
   test('name pages, and what names none is not found', () => {
     expect(parseRoute('/')).toEqual({ page: 'vessels' });
     expect(parseRoute('/vessels/')).toEqual({ page: 'vessels' });
-    expect(parseRoute('/vessels/abc')).toEqual({ page: 'vessel', id: 'abc' });
+    expect(parseRoute('/vessels/abc')).toEqual({ page: 'vessel', id: 'abc', tab: 'overview' });
+    expect(parseRoute('/vessels/abc/changes')).toEqual({
+      page: 'vessel',
+      id: 'abc',
+      tab: 'changes',
+    });
+    expect(parseRoute('/vessels/abc/changes/1')).toEqual({ page: 'not-found' });
     expect(parseRoute('/alerts')).toEqual({ page: 'alerts' });
     expect(parseRoute('/webhooks/')).toEqual({ page: 'webhooks' });
     expect(parseRoute('/binnacles')).toEqual({ page: 'binnacles' });
@@ -23,6 +29,10 @@ describe('addresses', () => {
     expect(parseRoute('/alerts/else')).toEqual({ page: 'not-found' });
     expect(parseRoute('/vessels/abc/else')).toEqual({ page: 'not-found' });
     expect(parseRoute('/elsewhere')).toEqual({ page: 'not-found' });
+  });
+
+  test('lead to the tab that has a panel', () => {
+    expect(vesselPanelPath('abc', 'binnacle')).toBe('/vessels/abc/adjustment#binnacle');
   });
 });
 

@@ -125,6 +125,7 @@ export const document = {
   reports: 'Reports · Binnacle',
   notifications: 'Notifications · Binnacle',
   settings: 'Settings · Binnacle',
+  help: 'Help · Binnacle',
   people: 'People · Binnacle',
   aboard: 'Agents · Binnacle',
   audit: 'Audit log · Binnacle',
@@ -149,4 +150,7 @@ export const pages = {
   home: 'My orders',
   platform: 'Platform',
   settings: 'Settings',
+  help: 'Help',
+  menu: 'Menu',
+  yourAccount: 'Your settings',
 };

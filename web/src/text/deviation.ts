@@ -36,6 +36,7 @@ export const deviation = {
   longitude: 'Longitude',
   date: 'Date',
   apply: 'Show',
+  more: 'Other places, card and book',
   reset: 'Back to the last position',
   choose: 'Choose another place',
   close: 'Close',
@@ -79,7 +80,7 @@ export const table = {
 
 export const residuals = {
   title: 'Residuals over time',
-  lead: 'Measured less predicted deviation. A step or a slope here means that the ship’s magnetism, or a reference, has changed.',
+  lead: 'Measured less predicted deviation, each sample by the model of its own epoch. What the models do not explain shows here: scatter, and a slope that is still too small to be called a change.',
   axisY: 'Residual',
   axisX: 'Day, UTC',
   mean: 'Daily mean',

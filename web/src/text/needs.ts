@@ -1,8 +1,8 @@
 /** Why somebody should look at a vessel. */
 
 export const needs = {
-  title: 'What she needs',
-  unknown: (why: string) => `What she needs could not be found out in full: ${why}`,
+  title: 'Needs',
+  unknown: (why: string) => `What is needed could not be found out in full: ${why}`,
   alerts: 'Open alerts',
   noAlerts: 'none',
   notKnown: 'not known yet',

@@ -20,25 +20,81 @@ export const vessel = {
     'Ordinary sailing brings them in: the agent keeps every stretch in which the ship holds a steady heading at speed, away from the berth.',
 };
 
-export const vesselPartsLabel = 'On this page';
-/** The parts of her page, short, by their ids. */
-export const vesselParts = {
+export const vesselTabsLabel = 'About the vessel';
+export const vesselTabs = {
+  overview: 'Overview',
   deviation: 'Deviation',
-  trust: 'Trust',
-  residuals: 'Residuals',
   changes: 'Changes',
+  adjustment: 'Adjustment',
+  agent: 'Agent',
+  settings: 'Settings',
+};
+
+export const vesselPanelsLabel = 'On this page';
+/** The panels of the vessel's page, short, by their ids. */
+export const vesselPanels = {
+  deviation: 'Curve and table',
   card: 'Card',
-  orders: 'Adjustment',
-  binnacle: 'Binnacle',
-  particulars: 'Particulars',
-  limits: 'Limits',
   book: 'Deviation book',
+  trust: 'Trust',
   azimuths: 'Azimuths',
-  logbook: 'Logbook',
   coverage: 'Coverage',
   parameters: 'Magnetism',
   coefficients: 'Coefficients',
+  history: 'Over time',
+  changes: 'What changed',
+  logbook: 'Logbook',
+  residuals: 'Residuals',
+  orders: 'Work orders',
+  binnacle: 'Binnacle',
   agents: 'On board',
+  enrol: 'Enrol',
+  particulars: 'Particulars',
+  limits: 'Limits',
+};
+
+/** What to do about a vessel now. */
+export const now = {
+  finding: 'Finding out what to do…',
+  nothing: 'Nothing to do now',
+  nothingDue: 'No alert is open, no adjustment is due and no order is under way.',
+  dueLater: (on: string) => `No alert is open. The next adjustment is due on ${on}.`,
+  openAlert: 'Open the alert',
+  seeChange: 'Before and after',
+  openOrder: 'Open the work order',
+  order: (state: string, port: string, on: string) => `${state}: ${port}, ${on}`,
+  overdue: (on: string) => `Adjustment overdue since ${on}`,
+  dueBy: (on: string) => `Adjustment due by ${on}`,
+  toSchedule: 'See the schedule',
+  noAgent: 'No agent is enrolled yet',
+  noAgentWhy:
+    'The agent on board records the compass and sends it here. Make a code and enter it on board.',
+  noModel: 'The agent is collecting samples',
+  noModelWhy:
+    'The first deviation curve comes after some days of sailing on different headings. There is nothing to do until then.',
+  toAgent: 'See the agent',
+};
+
+/** Deviation over time. */
+export const history = {
+  title: 'Deviation over time',
+  lead: 'The deviation on each heading, as if the vessel had been at the last position all along. A change of the ship’s magnetism is a step; the shaded bands are 95 %.',
+  headings: 'Headings',
+  none: 'No curve yet: it needs a model.',
+  noCurve: 'no curve',
+  summary: (headings: string, from: string, to: string, steps: number) =>
+    `Deviation on ${headings}, from ${from} to ${to}, with ${steps === 1 ? 'one change' : `${steps} changes`}. The table below has the figures.`,
+  axisY: 'Deviation',
+  table: 'Deviation as a table',
+  caption: 'Deviation on each heading by epoch',
+  from: 'From',
+  until: 'Until',
+  now: 'now',
+  start: 'the beginning',
+  sample: 'Sample within 15° of the heading',
+  epoch: 'Deviation by epoch',
+  change: 'Change of the ship’s magnetism',
+  passing: 'Storm, cargo or other disturbance',
 };
 
 export const agents = {

@@ -13,8 +13,9 @@ use axum::response::Response;
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
     img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; manifest-src 'self'; \
     worker-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
-/// Permissions policy: no page needs a device of the machine.
-const PERMISSIONS: &str = "camera=(), geolocation=(), microphone=(), payment=(), usb=()";
+/// Permissions policy: our own pages may ask for the position, at the berth; no page needs
+/// another device of the machine.
+const PERMISSIONS: &str = "camera=(), geolocation=(self), microphone=(), payment=(), usb=()";
 /// Strict transport security (RFC 6797): for a year, a browser uses only https for this host.
 const HTTPS_ONLY: &str = "max-age=31536000";
 

@@ -1,0 +1,35 @@
+import { expect, test } from 'vitest';
+import { topics } from 'virtual:help';
+import { passages, type Topic } from './help';
+
+const section = (id: string, title: string, text: string) => ({ id, title, text });
+const topic = (id: string, title: string, sections: Topic['sections']): Topic => ({
+  id,
+  title,
+  html: '',
+  sections,
+});
+const some = [
+  topic('cards', 'Cards', [section('', '', 'The band decides whether a card is made.')]),
+  topic('alerts', 'Alerts', [section('band', 'The band', 'It is too wide.')]),
+];
+
+test('passages have every word sought, and one in a title comes first', () => {
+  expect(passages(some, 'Band').map(({ topic }) => topic.id)).toEqual(['alerts', 'cards']);
+  expect(passages(some, 'band card').map(({ topic }) => topic.id)).toEqual(['cards']);
+  expect(passages(some, ' ')).toEqual([]);
+});
+
+test('no topic names a file of the documents, and every link within the help leads somewhere', () => {
+  const known = new Set(
+    topics.flatMap(({ id, sections }) => [
+      `/help/${id}`,
+      ...sections.filter(({ id }) => id !== '').map((one) => `/help/${id}#${one.id}`),
+    ]),
+  );
+  const links = topics.flatMap(({ html }) =>
+    [...html.matchAll(/href="(?!https?:)([^"]*)"/g)].map(([, href]) => href ?? ''),
+  );
+  expect(links.length).toBeGreaterThan(20);
+  expect(links.filter((link) => !known.has(link))).toEqual([]);
+});

@@ -1,0 +1,4 @@
+/** Made by scripts/help.ts when the dashboard is built. */
+declare module 'virtual:help' {
+  export const topics: import('./help').Topic[];
+}
