@@ -61,7 +61,7 @@ pub(super) struct Circumstances {
     pub(super) variation: Variation,
 }
 
-/// How far the compass was in each block of its past from where it is, degrees.
+/// Mean of the compass in each block of its past, less its present reading, degrees.
 type Past = [f64; BLOCKS];
 
 /// Latest readings of the compass.

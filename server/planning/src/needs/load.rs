@@ -4,6 +4,7 @@
 use super::facts::{Completed, Facts, Stored, UpcomingCall, Work, assess_compass};
 use super::order::{OpenOrder, load_open_orders};
 use super::over_limit_since::{self, DeviationHistory};
+use super::scope::{CompassKey, Which};
 use crate::port_calls;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_fleet::analysis::Findings;
@@ -20,17 +21,6 @@ use binnacle_platform::time::Time;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use uuid::Uuid;
-
-/// Vessel and compass: the key of what is stored of a compass.
-pub(super) type CompassKey = (VesselId, CompassId);
-
-/// Vessels of an operator in a range of ids.
-#[derive(Clone, Copy)]
-pub(super) struct Which {
-    pub(super) operator: OperatorId,
-    pub(super) first: VesselId,
-    pub(super) last: VesselId,
-}
 
 /// Stored records of a fleet, by vessel or by compass.
 struct FleetRecords {

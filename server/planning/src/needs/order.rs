@@ -2,7 +2,7 @@
 //!
 //! Invariant: of several open orders of a compass, the one that was opened last.
 
-use super::load::{CompassKey, Which};
+use super::scope::{CompassKey, Which};
 use binnacle_orders::work_orders::State;
 use binnacle_platform::db::{Db, Result, rows};
 use binnacle_platform::ids::{CompassId, OrderId, VesselId};

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 const SIGNED_AS: &[u8] = b"binnacle deviation card 1\n";
 const SIGNATURE_BYTES: usize = 64;
 
-/// What a printed card says, as its code has it (postcard 1.0).
+/// Content of a printed card, as its code has it (postcard 1.0).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(in crate::card) struct CardContent {
     pub(in crate::card) vessel: VesselId,

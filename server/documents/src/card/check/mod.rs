@@ -56,7 +56,7 @@ where
 /// Check of a printed deviation card.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct CardCheck {
-    /// Whether the card is in force.
+    /// State of the card.
     pub state: CardState,
     /// The state in words, with its reason.
     #[schema(example = "This card is in force.")]
@@ -77,7 +77,7 @@ pub struct CardCheck {
     /// Version of the model behind the card.
     #[schema(example = 12)]
     pub model_version: i64,
-    /// What the card says by compass heading from 0, each 15°.
+    /// Lines of the card by compass heading from 0, each 15°.
     pub rows: Vec<CheckedRow>,
     /// Greatest difference between the card and the compass's latest model, at the card's place,
     /// degrees; none without a model.
@@ -193,7 +193,7 @@ fn rows(content: &CardContent) -> impl Iterator<Item = CheckedRow> {
 #[derive(Clone, Copy)]
 struct Apart {
     largest_deg: f64,
-    /// Whether it is outside the latest model's 95 % band on some heading, by more than the digits
+    /// True where it is outside the latest model's 95 % band on some heading, by more than the digits
     /// of the card.
     is_outside: bool,
 }
