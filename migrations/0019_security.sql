@@ -33,8 +33,8 @@ CREATE INDEX audit_lines_by_firm ON audit_lines (firm_id, id);
 CREATE INDEX audit_lines_by_time ON audit_lines (at);
 CREATE INDEX audit_lines_refused ON audit_lines (at) WHERE refusal IS NOT NULL;
 
--- Time at which an operator's admins were last told of many refusals.
-ALTER TABLE operators ADD COLUMN refusals_told_at BIGINT;
+-- Time at which an operator's admins were last notified of many refusals.
+ALTER TABLE operators ADD COLUMN refusals_notified_at BIGINT;
 
 -- The wait follows from the count and the time of the last failure, so that a clock that was wrong
 -- locks nobody out.

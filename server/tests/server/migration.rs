@@ -44,6 +44,51 @@ async fn on_postgres_a_database_of_another_version_is_refused() {
     check_other_version_is_refused(Engine::Postgres).await;
 }
 
+#[tokio::test]
+async fn on_sqlite_audit_lines_survive_the_change_of_their_table() {
+    check_audit_lines_survive(Engine::Sqlite).await;
+}
+
+#[tokio::test]
+async fn on_postgres_audit_lines_survive_the_change_of_their_table() {
+    check_audit_lines_survive(Engine::Postgres).await;
+}
+
+/// Checks that lines of before migration 19, which makes their table again, are shown as they were.
+async fn check_audit_lines_survive(engine: Engine) {
+    let bare = TestServer::bare(engine).await;
+    let all = sqlx::migrate!("../migrations");
+    let before = all.iter().filter(|migration| migration.version < 19);
+    let before = Migrator::with_migrations(before.cloned().collect());
+    match bare.db.pools() {
+        Pools::Sqlite { writer, .. } => before.run(writer).await.unwrap(),
+        Pools::Postgres(pool) => before.run(pool).await.unwrap(),
+    }
+    let id = Uuid::now_v7();
+    let mut tx = bare.db.begin().await.unwrap();
+    run!(
+        &mut tx,
+        "INSERT INTO audit_lines (id, at, actor_kind, actor_name, address, method, route, path,
+                                  status)
+         VALUES ($1, $2, 'command', 'command line', '', '', 'admin reset-user', 'admin', 200)",
+        id,
+        NOW
+    );
+    tx.commit().await.unwrap();
+    bare.db.migrate().await.unwrap();
+    let server = bare.open().await;
+    let root = server.admin("ada").await.platform_admin(&server).await;
+    let listed = root.get("/audit?route=admin%20reset-user").await.good();
+    let line = &listed["items"][0];
+    assert_eq!(line["id"], id.to_string());
+    assert_eq!(line["actor_name"], "command line");
+    assert_eq!(
+        (&line["account"], &line["refusal"]),
+        (&json!(null), &json!(null))
+    );
+    server.finish().await;
+}
+
 /// Checks that an unknown migration and one with another text are refused.
 async fn check_other_version_is_refused(engine: Engine) {
     for number in [1, 63] {

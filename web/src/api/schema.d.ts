@@ -1589,7 +1589,7 @@ export interface paths {
         post?: never;
         /**
          * Revoke an API token
-         * @description What was made with it stays, unless you say otherwise.
+         * @description Things made with it stay, unless you say otherwise.
          */
         delete: operations["delete_token"];
         options?: never;
@@ -4055,7 +4055,7 @@ export interface components {
             order_id: components["schemas"]["OrderId"] | null;
             /** @description Route with its ids filled in. */
             path: string;
-            refusal: components["schemas"]["Refusal"] | null;
+            refusal: components["schemas"]["SignInRefusal"] | null;
             /** @description Route as named in this document, or the command. */
             route: string;
             /**
@@ -10301,6 +10301,11 @@ export interface components {
             name: string | null;
         };
         /**
+         * @description Reason for which a sign-in, a code or a token was refused.
+         * @enum {string}
+         */
+        SignInRefusal: "wrong_password" | "wrong_code" | "throttled" | "provider" | "invalid_token" | "invalid_code";
+        /**
          * @description Sign-in rules of an operator.
          * @example {
          *       "second_factor_required": true
@@ -10480,7 +10485,7 @@ export interface components {
             /** @description The token's id. */
             id: components["schemas"]["TokenId"];
             last_used_at: components["schemas"]["Time"] | null;
-            /** @description What was made with the token and goes on without it. */
+            /** @description Things made with the token that go on without it. */
             made: components["schemas"]["MadeByToken"][];
             /** @description Purpose of the token, in the user's words. */
             name: string;
@@ -16992,6 +16997,15 @@ export interface operations {
             };
             /** @description Forbidden */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The quota is used up */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -25284,6 +25298,15 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The quota is used up */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Payload Too Large */
             413: {
                 headers: {
@@ -25421,6 +25444,15 @@ export interface operations {
             };
             /** @description Not Found */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The quota is used up */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -26702,6 +26734,15 @@ export interface operations {
             };
             /** @description Forbidden */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The quota is used up */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };

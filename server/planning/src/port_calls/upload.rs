@@ -77,7 +77,9 @@ pub(super) struct Uploaded {
     request_body(content = inline(FileContent), content_type = "text/csv",
         example = "vessel,id,port,eta,etd\n9074729,c1,NLRTM,2026-12-08T06:00:00Z,2026-12-10T18:00:00Z\n"),
     responses((status = 200, body = Uploaded), (status = 401, body = Problem),
-              (status = 403, body = Problem), (status = 413, body = Problem),
+              (status = 403, body = Problem),
+              (status = 409, description = "The quota is used up", body = Problem),
+              (status = 413, body = Problem),
               (status = 422, description = "The file has errors; the detail names the first fifty \
                              with line and column", body = Problem)))]
 async fn upload_fleet_csv(
@@ -113,6 +115,7 @@ async fn upload_fleet_csv(
         example = "id,port,eta,etd\nc1,NLRTM,2026-12-08T06:00:00Z,2026-12-10T18:00:00Z\n"),
     responses((status = 200, body = Uploaded), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "The quota is used up", body = Problem),
               (status = 413, body = Problem),
               (status = 422, description = "The file has errors; the detail names the first fifty \
                              with line and column", body = Problem)))]
@@ -182,6 +185,7 @@ async fn read_csv(
         example = "BEGIN:VCALENDAR\r\nVERSION:2.0\r\nPRODID:-//agent//calls//EN\r\nBEGIN:VEVENT\r\nUID:c1@agent.example\r\nDTSTAMP:20261121T000000Z\r\nDTSTART:20261208T060000Z\r\nDTEND:20261210T180000Z\r\nLOCATION:NLRTM\r\nEND:VEVENT\r\nEND:VCALENDAR\r\n"),
     responses((status = 200, body = Uploaded), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "The quota is used up", body = Problem),
               (status = 413, body = Problem),
               (status = 422, description = "The file has errors; the detail names line and property", body = Problem)))]
 async fn upload_ics(

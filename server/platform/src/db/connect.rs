@@ -1,6 +1,6 @@
 //! Database connections by URL, and schema migrations.
 
-use super::file::{Claim, damaged, is_damage, make_private};
+use super::file::{Claim, TRY_EVERY, damaged, is_busy, is_damage, make_private};
 use super::{Db, Pools, Subscribers, Workload};
 use crate::sealing::Seals;
 use anyhow::{Context, bail};
@@ -8,10 +8,10 @@ use sqlx::migrate::{MigrateError, Migrator};
 use sqlx::pool::PoolOptions;
 use sqlx::postgres::PgConnectOptions;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqliteSynchronous};
-use sqlx::{Connection, Database, PgConnection, PgPool};
+use sqlx::{Connection, Database, PgConnection, PgPool, SqlitePool};
 use std::str::FromStr;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 static PORTABLE: Migrator = sqlx::migrate!("../../migrations");
 static POSTGRES_ONLY: Migrator = sqlx::migrate!("../../migrations/postgres");
@@ -121,20 +121,33 @@ async fn connect_sqlite(url: &str) -> anyhow::Result<[Pools; 3]> {
         .synchronous(SqliteSynchronous::Full)
         .busy_timeout(BUSY_TIMEOUT);
     make_private(options.get_filename())?;
-    let opened = pool(1, BUSY_TIMEOUT).connect_with(options.clone()).await;
-    let writer = opened.map_err(|error| {
-        if is_damage(&error) {
-            damaged(options.get_filename(), error)
-        } else {
-            anyhow::Error::new(error).context(format!("cannot open {url}"))
-        }
-    })?;
+    let writer = open_writer(&options, url).await?;
     let options = options.pragma("query_only", "ON");
     Ok(Workload::ALL.map(|workload| Pools::Sqlite {
         readers: pool(workload.readers(), workload.patience_on_sqlite())
             .connect_lazy_with(options.clone()),
         writer: writer.clone(),
     }))
+}
+
+/// Opens the connection that writes. SQLite's own timeout does not cover the change of a new file's
+/// journal, which another process may be making.
+async fn open_writer(options: &SqliteConnectOptions, url: &str) -> anyhow::Result<SqlitePool> {
+    let begun = Instant::now();
+    loop {
+        let opened = pool(1, BUSY_TIMEOUT).connect_with(options.clone()).await;
+        let error = match opened {
+            Ok(writer) => return Ok(writer),
+            Err(error) => error,
+        };
+        if is_damage(&error) {
+            return Err(damaged(options.get_filename(), error));
+        }
+        if !is_busy(&error) || begun.elapsed() > BUSY_TIMEOUT {
+            return Err(anyhow::Error::new(error).context(format!("cannot open {url}")));
+        }
+        tokio::time::sleep(TRY_EVERY).await;
+    }
 }
 
 async fn connect_postgres(url: &str) -> anyhow::Result<[Pools; 3]> {

@@ -22,7 +22,7 @@ const MIGRATING: &str = "migrate";
 /// Longest wait for a change of the schema by another process.
 const PATIENCE: Duration = Duration::from_mins(10);
 /// Interval between attempts to get the lock.
-const TRY_EVERY: Duration = Duration::from_millis(50);
+pub(super) const TRY_EVERY: Duration = Duration::from_millis(50);
 
 /// Right to serve a database or to change its schema. On PostgreSQL several processes may.
 #[derive(Debug)]
@@ -123,11 +123,19 @@ pub(super) fn damaged(file: &Path, detail: impl Display) -> anyhow::Error {
 /// Checks for the errors that SQLite has for a damaged file [sqlite.org, "Result and Error Codes":
 /// SQLITE_CORRUPT and SQLITE_NOTADB].
 pub(super) fn is_damage(error: &sqlx::Error) -> bool {
-    let code = error.as_database_error().and_then(|error| error.code());
-    let primary = code
-        .and_then(|code| code.parse::<u32>().ok())
-        .map(|code| code & 0xff);
-    matches!(primary, Some(11 | 26))
+    matches!(primary_code(error), Some(11 | 26))
+}
+
+/// Checks for the error that SQLite has for a lock of another process (SQLITE_BUSY).
+pub(super) fn is_busy(error: &sqlx::Error) -> bool {
+    primary_code(error) == Some(5)
+}
+
+fn primary_code(error: &sqlx::Error) -> Option<u32> {
+    let code = error
+        .as_database_error()
+        .and_then(sqlx::error::DatabaseError::code);
+    Some(code?.parse::<u32>().ok()? & 0xff)
 }
 
 fn file_of(pool: &SqlitePool) -> PathBuf {

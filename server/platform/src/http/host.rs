@@ -4,17 +4,24 @@
 //! section 3.2).
 
 use crate::error::Error;
-use axum::extract::Request;
+use axum::extract::{ConnectInfo, Request};
 use axum::http::Version;
 use axum::http::header::HOST;
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use std::net::SocketAddr;
 
 /// Refuses a request with several Host headers, and one of HTTP/1.1 without any.
 pub async fn must_be_one(request: Request, next: Next) -> Response {
     let hosts = request.headers().get_all(HOST).iter().count();
-    // HTTP/2 names the host elsewhere, and HTTP/1.0 needs none.
-    if hosts > 1 || (hosts == 0 && request.version() == Version::HTTP_11) {
+    // HTTP/2 names the host elsewhere, HTTP/1.0 needs none, and what this process asks of itself
+    // comes over no connection.
+    let is_remote = request
+        .extensions()
+        .get::<ConnectInfo<SocketAddr>>()
+        .is_some();
+    let lacks_one = hosts == 0 && is_remote && request.version() == Version::HTTP_11;
+    if hosts > 1 || lacks_one {
         let refused = format!("a request has one Host header, and this one has {hosts}");
         return Error::BadRequest(refused).into_response();
     }

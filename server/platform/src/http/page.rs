@@ -141,10 +141,8 @@ impl<S: Send + Sync> FromRequestParts<S> for Page {
         let axum::extract::Query(page): axum::extract::Query<Page> =
             axum::extract::Query::from_request_parts(parts, state).await?;
         if !(1..=MAX_LIMIT as usize).contains(&page.limit()) {
-            return Err(Error::Invalid {
-                field: "limit",
-                detail: format!("{} is outside 1 to {MAX_LIMIT}", page.limit()),
-            });
+            let outside = format!("limit: {} is outside 1 to {MAX_LIMIT}", page.limit());
+            return Err(Error::BadRequest(outside));
         }
         Ok(page)
     }

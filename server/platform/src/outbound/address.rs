@@ -32,7 +32,7 @@ pub(super) fn may_be_public(name: &str) -> bool {
         let before = name.strip_suffix(*end);
         before.is_some_and(|before| before.is_empty() || before.ends_with('.'))
     };
-    name.contains('.') && !LOCAL.iter().any(|end| ends_locally(&end))
+    name.contains('.') && !LOCAL.iter().any(ends_locally)
 }
 
 fn is_public_v4(address: Ipv4Addr) -> bool {

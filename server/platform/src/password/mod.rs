@@ -100,7 +100,6 @@ mod tests {
             "administrator",
             "P@ssw0rd1234",
             "trustno1trustno1",
-            "captain-compass",
             "zxcvbnm,./123",
         ] {
             let refused = check("password", weak, &ABOUT);

@@ -35,9 +35,9 @@ struct QuotaUse {
     /// Name of the quota.
     #[schema(example = "webhooks")]
     name: &'static str,
-    /// What there is.
+    /// Number of those that exist.
     used: i64,
-    /// What there may be.
+    /// Largest number allowed.
     most: i64,
 }
 
@@ -53,15 +53,15 @@ struct Quotas {
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({ "most": 100 }))]
 struct ChangedQuota {
-    /// What there may be; `null` for the limit by default.
+    /// Largest number allowed; `null` for the limit by default.
     #[schema(required, minimum = 0, maximum = 1_000_000_000)]
     most: Option<i64>,
 }
 
 /// Show your quotas
 ///
-/// What your company has of each thing that is limited, and how much it may have. Something beyond the
-/// limit is refused with the type `quota-exceeded`.
+/// The response has how much your company has of each limited thing, and how much it may have.
+/// Something beyond the limit is refused with the type `quota-exceeded`.
 #[utoipa::path(get, path = "/quotas", tag = "people",
     responses((status = 200, body = Quotas), (status = 401, body = Problem),
               (status = 403, body = Problem)))]
@@ -79,7 +79,7 @@ async fn list_quotas(
 
 /// Set an operator's quota
 ///
-/// What is there beyond a lower limit stays.
+/// Things beyond a lower limit stay.
 #[utoipa::path(put, path = "/operators/{id}/quotas/{quota}", tag = "platform",
     params(("id" = OperatorId, Path), ("quota" = String, Path, example = "webhooks")),
     request_body = ChangedQuota,

@@ -19,26 +19,26 @@ pub const NOTICE_KIND: DeclaredKind =
 const MANY: i64 = 20;
 /// Period in which refusals are counted, seconds.
 const WITHIN_S: f64 = 3600.0;
-/// Time until the same operator is told again, seconds.
-const TOLD_AGAIN_AFTER_S: f64 = 86_400.0;
+/// Time until the same operator is notified again, seconds.
+const NOTIFIED_AGAIN_AFTER_S: f64 = 86_400.0;
 /// Interval between two looks at the audit log.
 const LOOK_EVERY: Duration = Duration::from_mins(1);
 /// Accounts and addresses that a notice names at most.
 const MOST_NAMED: i64 = 5;
 
-/// Tells the admins of each operator with many refusals in the last hour, once a day. Returns the
+/// Notifies the admins of each operator with many refusals in the last hour, once a day. Returns the
 /// number of operators.
 ///
 /// # Errors
 /// Fails when the database fails.
-pub async fn tell_of_many(app: &App) -> Result<usize> {
+pub async fn notify_of_many(app: &App) -> Result<usize> {
     let now = app.clock.now();
     let since = Time(now.plus_seconds(-WITHIN_S));
-    let told_before = Time(now.plus_seconds(-TOLD_AGAIN_AFTER_S));
-    let attacked = list_attacked(&app.db, since, told_before).await?;
+    let notified_before = Time(now.plus_seconds(-NOTIFIED_AGAIN_AFTER_S));
+    let attacked = list_attacked(&app.db, since, notified_before).await?;
     for (operator, refusals) in &attacked {
         let mut tx = app.db.begin().await?;
-        if !note_told(&mut tx, *operator, told_before, now.into()).await? {
+        if !note_notified(&mut tx, *operator, notified_before, now.into()).await? {
             continue;
         }
         let accounts = most_tried(&mut tx, *operator, since).await?;
@@ -59,7 +59,7 @@ pub async fn tell_of_many(app: &App) -> Result<usize> {
 /// Looks for many refusals until the server stops.
 pub async fn watch(app: App) {
     while !app.stopping.is_cancelled() {
-        if let Err(error) = tell_of_many(&app).await {
+        if let Err(error) = notify_of_many(&app).await {
             error!(?error, "refused sign-ins cannot be counted");
         }
         tokio::select! {
@@ -93,7 +93,7 @@ fn notice(refusals: i64, tried: &[(String, String, i64)]) -> Notice {
 async fn list_attacked(
     db: &Db,
     since: Time,
-    told_before: Time,
+    notified_before: Time,
 ) -> db::Result<Vec<(OperatorId, i64)>> {
     rows!(
         db,
@@ -101,30 +101,30 @@ async fn list_attacked(
         "SELECT l.operator_id, COUNT(*) FROM audit_lines l
          JOIN operators o ON o.id = l.operator_id
          WHERE l.refusal IS NOT NULL AND l.at >= $1
-           AND (o.refusals_told_at IS NULL OR o.refusals_told_at < $2)
+           AND (o.refusals_notified_at IS NULL OR o.refusals_notified_at < $2)
          GROUP BY l.operator_id
          HAVING COUNT(*) >= $3
          ORDER BY l.operator_id",
         since,
-        told_before,
+        notified_before,
         MANY
     )
 }
 
-/// Records that an operator is told now; false if another process has told it.
-async fn note_told(
+/// Records that an operator is notified now; false if another process has done it.
+async fn note_notified(
     tx: &mut Tx,
     operator: OperatorId,
-    told_before: Time,
+    notified_before: Time,
     now: Time,
 ) -> db::Result<bool> {
     let noted = execute!(
         tx,
-        "UPDATE operators SET refusals_told_at = $2
-         WHERE id = $1 AND (refusals_told_at IS NULL OR refusals_told_at < $3)",
+        "UPDATE operators SET refusals_notified_at = $2
+         WHERE id = $1 AND (refusals_notified_at IS NULL OR refusals_notified_at < $3)",
         operator,
         now,
-        told_before
+        notified_before
     )?;
     Ok(noted > 0)
 }

@@ -1,5 +1,5 @@
-//! What a program has made with an API token, and what outlives the token: receivers of messages and
-//! calendars. Whoever revokes a leaked token needs to see it, and can remove it with the token.
+//! Things that a program has made with an API token and that outlive the token: receivers of
+//! messages and calendars. Whoever revokes a leaked token needs to see them, and can remove them.
 
 use crate::db::{self, Db, DomainEvent, Question, Tx, execute, rows};
 use crate::error::Result;
@@ -22,7 +22,7 @@ pub enum MadeKind {
     CalendarFeed,
 }
 
-/// What a token made and goes on without it.
+/// Thing that a token made and that goes on without it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[schema(as = MadeByToken)]
 pub struct Made {

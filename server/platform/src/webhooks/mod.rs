@@ -79,7 +79,9 @@ async fn list_webhooks(
 /// with it: `Binnacle-Signature: t=SECONDS,v1=HEX`, HMAC-SHA-256 over `SECONDS.BODY`.
 #[utoipa::path(post, path = "/webhooks", tag = "alerts", params(Key), request_body = NewWebhook,
     responses((status = 201, body = MadeWebhook), (status = 401, body = Problem),
-              (status = 403, body = Problem), (status = 422, body = Problem)))]
+              (status = 403, body = Problem),
+              (status = 409, description = "The quota is used up", body = Problem),
+              (status = 422, body = Problem)))]
 async fn create_webhook(
     State(app): State<App>,
     State(kinds): State<MessageKinds>,

@@ -4,7 +4,7 @@
 use crate::second_factor::set_up;
 use crate::secrets::Program;
 use binnacle_platform::session::Role;
-use binnacle_platform::sign_in_watch::tell_of_many;
+use binnacle_platform::sign_in_watch::notify_of_many;
 use binnacle_server_testing::{
     ApiResponse, HOUR_S, PASSWORD, Person, TestServer, client, on_both, try_sign_in,
 };
@@ -128,7 +128,7 @@ async fn an_operators_admins_hear_once_of_many_refused_sign_ins(server: TestServ
     let fleet = Some(ada.operator.into());
     Person::create(&server, fleet, "bob@example.com", Role::Viewer).await;
     Person::create(&server, fleet, "col@example.com", Role::Viewer).await;
-    let told = async |who: &Person| {
+    let notices = async |who: &Person| {
         let listed = who.get("/notifications?kind=sign_ins_refused").await;
         listed.good()["items"].as_array().unwrap().clone()
     };
@@ -137,12 +137,12 @@ async fn an_operators_admins_hear_once_of_many_refused_sign_ins(server: TestServ
             try_sign_in(&server, email, "a guess").await;
         }
     }
-    assert_eq!(tell_of_many(&server.app).await.unwrap(), 0);
+    assert_eq!(notify_of_many(&server.app).await.unwrap(), 0);
     for _ in 0..5 {
         try_sign_in(&server, &viewer.email, "a guess").await;
     }
-    assert_eq!(tell_of_many(&server.app).await.unwrap(), 1);
-    let heard = told(&ada).await;
+    assert_eq!(notify_of_many(&server.app).await.unwrap(), 1);
+    let heard = notices(&ada).await;
     assert_eq!(heard.len(), 1);
     assert_eq!(
         heard[0]["subject"],
@@ -153,11 +153,11 @@ async fn an_operators_admins_hear_once_of_many_refused_sign_ins(server: TestServ
         text.contains("bob@example.com from 127.0.0.1: 5 times"),
         "{text}"
     );
-    assert!(told(&eve).await.is_empty());
+    assert!(notices(&eve).await.is_empty());
     let of_viewer = viewer.get("/notifications").await.good();
     assert_eq!(of_viewer["items"], json!([]));
     server.advance(HOUR_S / 2.0);
-    assert_eq!(tell_of_many(&server.app).await.unwrap(), 0);
+    assert_eq!(notify_of_many(&server.app).await.unwrap(), 0);
     server.finish().await;
 }
 
