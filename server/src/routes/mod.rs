@@ -17,8 +17,8 @@ use axum::routing::get;
 use binnacle_documents::{card, deviation_book};
 use binnacle_fleet::models::NoModelFields;
 use binnacle_fleet::{
-    alerts, azimuths, binnacles, changes, compasses, deviation_table, enrolment, fleet_views, ingest,
-    logbook, models, operators, overview, particulars, samples, settings, tags, vessel_api,
+    alerts, azimuths, binnacles, changes, compasses, deviation_table, enrolment, fleet_views,
+    ingest, logbook, models, operators, overview, particulars, samples, settings, tags, vessel_api,
 };
 use binnacle_orders::work_orders::NotAdjustableFields;
 use binnacle_orders::{api as orders_api, firms};

@@ -1,12 +1,12 @@
 //! Alerts from an analysis or a silent agent.
 
 use binnacle_compass::angle::TrueHeading;
-use binnacle_fleet::alerts;
 use binnacle_compass::time::Timestamp;
-use binnacle_server_testing::{DAY_S, START};
+use binnacle_fleet::alerts;
 use binnacle_server_testing::alerts::{set_alert_limits, ship_with_model};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{ApiResponse, Person, TestServer, passage};
+use binnacle_server_testing::{DAY_S, START};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -387,12 +387,21 @@ async fn several_alerts_are_acknowledged_together_or_not_at_all(server: TestServ
     set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let alert = list(&ada, "").await.remove(0);
     let all = json!({ "alerts": [alert["id"], alert["id"]], "note": "Master informed" });
-    assert_eq!(eve.post("/alerts/acknowledge", &all).await.problem(), "not-found");
+    assert_eq!(
+        eve.post("/alerts/acknowledge", &all).await.problem(),
+        "not-found"
+    );
     let unknown = json!({ "alerts": [alert["id"], "019a0000-0000-7000-8000-000000000000"] });
-    assert_eq!(ada.post("/alerts/acknowledge", &unknown).await.problem(), "not-found");
+    assert_eq!(
+        ada.post("/alerts/acknowledge", &unknown).await.problem(),
+        "not-found"
+    );
     assert_eq!(list(&ada, "").await[0]["state"], "raised");
     let none = json!({ "alerts": [] });
-    assert_eq!(ada.post("/alerts/acknowledge", &none).await.problem(), "invalid");
+    assert_eq!(
+        ada.post("/alerts/acknowledge", &none).await.problem(),
+        "invalid"
+    );
     for expected in [1, 0] {
         let done = ada.post("/alerts/acknowledge", &all).await.good();
         assert_eq!(done["acknowledged"], expected);
@@ -418,17 +427,25 @@ async fn an_alert_is_assigned_to_a_colleague_and_commented(server: TestServer) {
     let me = id(&ada).await;
     let assigned = put(&ada, &path(&alert, "/assignee"), json!({ "user_id": me })).await;
     let assigned = assigned.good();
-    assert_eq!((&assigned["assigned_to"], &assigned["state"]), (&me, &json!("raised")));
+    assert_eq!(
+        (&assigned["assigned_to"], &assigned["state"]),
+        (&me, &json!("raised"))
+    );
     assert_eq!(assigned["assigned_name"], "ada@example.com");
     let nobody = put(&ada, &path(&alert, "/assignee"), json!({ "user_id": null })).await;
     assert_eq!(nobody.good()["assigned_name"], Value::Null);
     let comments = path(&alert, "/comments");
-    ada.post(&comments, &json!({ "text": "Azimuth tonight." })).await.good();
+    ada.post(&comments, &json!({ "text": "Azimuth tonight." }))
+        .await
+        .good();
     let listed = ada.get(&comments).await.good();
     assert_eq!(listed["items"][0]["text"], "Azimuth tonight.");
     assert_eq!(listed["items"][0]["by"], "ada@example.com");
     assert_eq!(eve.get(&comments).await.problem(), "not-found");
-    assert_eq!(ada.post(&comments, &json!({ "text": " " })).await.problem(), "invalid");
+    assert_eq!(
+        ada.post(&comments, &json!({ "text": " " })).await.problem(),
+        "invalid"
+    );
     server.finish().await;
 }
 

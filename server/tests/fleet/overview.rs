@@ -192,7 +192,10 @@ async fn tags_and_saved_views_are_ones_own(server: TestServer) {
     let long = json!({ "tags": ["x".repeat(41)] });
     assert_eq!(put(&ada, &path, long).await.problem(), "invalid");
     put(&ada, &path, json!({ "tags": [] })).await.good();
-    assert_eq!(ada.get("/fleet").await.good()["vessels"][0]["tags"], json!([]));
+    assert_eq!(
+        ada.get("/fleet").await.good()["vessels"][0]["tags"],
+        json!([])
+    );
 
     let views = json!({ "items": [
         { "name": "Tankers", "search": "?tag=tanker" },
@@ -204,7 +207,10 @@ async fn tags_and_saved_views_are_ones_own(server: TestServer) {
     assert_eq!(names, ["All", "Tankers"]);
     let viewer = ada.viewer(&server).await;
     for other in [&viewer, &eve] {
-        assert_eq!(other.get("/me/fleet-views").await.good()["items"], json!([]));
+        assert_eq!(
+            other.get("/me/fleet-views").await.good()["items"],
+            json!([])
+        );
     }
     server.finish().await;
 }

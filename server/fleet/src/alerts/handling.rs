@@ -135,7 +135,10 @@ async fn acknowledge_alerts(
     if given.alerts.is_empty() || given.alerts.len() > MAX_ALERTS {
         return Err(Error::Invalid {
             field: "alerts",
-            detail: format!("names {} alerts; 1 to {MAX_ALERTS} are allowed", given.alerts.len()),
+            detail: format!(
+                "names {} alerts; 1 to {MAX_ALERTS} are allowed",
+                given.alerts.len()
+            ),
         });
     }
     let mut found = Vec::new();

@@ -61,7 +61,9 @@ async fn put_tags(
     for tag in &given.tags {
         let tag = text("tags", tag)?;
         if tag.chars().count() > MAX_CHARS {
-            return Err(invalid(format!("{tag:?} is longer than {MAX_CHARS} characters")));
+            return Err(invalid(format!(
+                "{tag:?} is longer than {MAX_CHARS} characters"
+            )));
         }
         tags.insert(tag);
     }

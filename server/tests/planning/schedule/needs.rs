@@ -60,7 +60,10 @@ async fn a_need_says_how_far_the_order_of_its_compass_has_come(server: TestServe
                         "port": "Bilbao", "planned_at": "2026-11-22T09:00:00Z" });
     let order = ada.post("/work-orders", &order).await.good();
     let open = need(&ada, &nao).await["order"].clone();
-    assert_eq!((&open["id"], &open["state"]), (&order["id"], &json!("planned")));
+    assert_eq!(
+        (&open["id"], &open["state"]),
+        (&order["id"], &json!("planned"))
+    );
     assert_eq!(open["until"], "2026-11-22T12:00:00Z");
     let orders = format!("/work-orders/{}", order["id"].as_str().unwrap());
     let on_board = format!("{orders}/on-board");
