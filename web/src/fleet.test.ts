@@ -14,11 +14,13 @@ import {
   longestSilentFirst,
   quality,
   sortedBy,
+  tagsOf,
+  toCsv,
   toSearch,
   usual,
   withNews,
 } from './fleet';
-import { savedViews, saveViews, withView } from './views';
+import { withView } from './views';
 
 const now = new Date('2026-11-22T06:00:00Z');
 
@@ -32,6 +34,7 @@ function vessel(name: string, more: Partial<FleetVessel> = {}): FleetVessel {
     position: null,
     track: [],
     interference: [],
+    tags: [],
     model: { version: 1, rms_deg: 0.4, data_until: '2026-11-22T04:00:00Z', cautions: 0 },
     worst: { compass_deg: 90, deviation_deg: 2, band95_deg: 0.5 },
     open_alerts: 0,
@@ -146,27 +149,43 @@ describe('the fleet', () => {
 
 describe('a view', () => {
   it('stands in the address bar and comes back from it', () => {
-    const query = { search: 'nao', filter: 'silent', sort: 'worst', reversed: true } as const;
+    const query = {
+      ...usual,
+      search: 'nao',
+      filter: 'silent',
+      sort: 'worst',
+      reversed: true,
+    } as const;
     expect(fromSearch(toSearch(query))).toEqual(query);
     expect(toSearch(usual)).toBe('');
     expect(fromSearch('?show=nonsense&sort=x')).toEqual(usual);
   });
 
-  it('is kept by person, one of a name, and never breaks the page', () => {
-    const kept = new Map<string, string>();
-    const store = {
-      getItem: (key: string) => kept.get(key) ?? null,
-      setItem: (key: string, value: string) => void kept.set(key, value),
-    };
+  it('replaces a saved view of the same name', () => {
     const one = withView([], { name: 'Mine', search: '?q=a' });
-    const two = withView(one, { name: 'Mine', search: '?q=b' });
-    saveViews(store, 'ada', two);
-    expect(savedViews(store, 'ada')).toEqual([{ name: 'Mine', search: '?q=b' }]);
-    expect(savedViews(store, 'eve')).toEqual([]);
-    kept.set('binnacle.views.eve', '{not json');
-    expect(savedViews(store, 'eve')).toEqual([]);
-    kept.set('binnacle.views.eve', '[{"name":1},{"name":"x","search":"?q=1"}]');
-    expect(savedViews(store, 'eve')).toEqual([{ name: 'x', search: '?q=1' }]);
+    const two = withView(withView(one, { name: 'All', search: '' }), {
+      name: 'Mine',
+      search: '?q=b',
+    });
+    expect(two).toEqual([
+      { name: 'All', search: '' },
+      { name: 'Mine', search: '?q=b' },
+    ]);
+  });
+
+  it('asks for the vessels with a tag, and keeps it in the address', () => {
+    const tagged = [vessel('A', { tags: ['tanker'] }), vessel('B', { tags: ['ferry', 'tanker'] })];
+    const query = { ...usual, tag: 'ferry' };
+    expect(arranged(tagged, query, now).map(({ name }) => name)).toEqual(['B']);
+    expect(fromSearch(toSearch(query))).toEqual(query);
+    expect(tagsOf(tagged)).toEqual(['ferry', 'tanker']);
+  });
+
+  it('is a table of a spreadsheet, in which no name is a formula', () => {
+    const [head, ...rows] = toCsv([vessel('=A"1', { tags: ['x', 'y'] })]).split('\r\n');
+    expect(head).toMatch(/^Vessel,IMO number,/);
+    expect(rows[0]).toMatch(/^"'=A""1",/);
+    expect(rows[0]).toContain('x y');
   });
 });
 

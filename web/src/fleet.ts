@@ -7,6 +7,7 @@ import type { FleetVessel } from './api/types';
 import { pressing, reasonsOf, worstAhead, type FleetLine } from './attention';
 import { plainly } from './plainly';
 import { grade } from './science/curve';
+import * as text from './text';
 
 export const filters = ['all', 'attention', 'unacknowledged', 'large', 'weak', 'silent'] as const;
 export type Filter = (typeof filters)[number];
@@ -18,11 +19,19 @@ export interface Query {
   search: string;
   filter: Filter;
   sort: Sort;
+  /** Only vessels with this tag; all where it is empty. */
+  tag: string;
   /** Against the column's usual order. */
   reversed: boolean;
 }
 
-export const usual: Query = { search: '', filter: 'all', sort: 'needs', reversed: false };
+export const usual: Query = {
+  search: '',
+  filter: 'all',
+  sort: 'needs',
+  tag: '',
+  reversed: false,
+};
 
 const dayMs = 86_400_000;
 
@@ -31,6 +40,7 @@ export function arranged(vessels: readonly FleetLine[], query: Query, now: Date)
   const words = plainly(query.search).split(/\s+/).filter(Boolean);
   const sign = query.reversed ? -1 : 1;
   return vessels
+    .filter((vessel) => query.tag === '' || vessel.tags.includes(query.tag))
     .filter((vessel) => passes(vessel, query.filter, now) && says(vessel, words))
     .sort((a, b) => sign * compare(a, b, query.sort) || byName(a, b));
 }
@@ -111,11 +121,12 @@ export function quality(vessel: FleetVessel): Quality {
 }
 
 /** A query as it stands in the address bar; the usual one is nothing. */
-export function toSearch({ search, filter, sort, reversed }: Query): string {
+export function toSearch({ search, filter, sort, tag, reversed }: Query): string {
   const params = new URLSearchParams();
   if (search.trim() !== '') params.set('q', search.trim());
   if (filter !== usual.filter) params.set('show', filter);
   if (sort !== usual.sort) params.set('sort', sort);
+  if (tag !== '') params.set('tag', tag);
   if (reversed) params.set('order', 'reversed');
   const text = params.toString();
   return text === '' ? '' : `?${text}`;
@@ -128,8 +139,35 @@ export function fromSearch(text: string): Query {
     search: params.get('q') ?? '',
     filter: filters.find((known) => known === params.get('show')) ?? usual.filter,
     sort: sorts.find((known) => known === params.get('sort')) ?? usual.sort,
+    tag: params.get('tag') ?? '',
     reversed: params.get('order') === 'reversed',
   };
+}
+
+/** The tags that any of the vessels has. */
+export const tagsOf = (vessels: readonly FleetVessel[]): string[] =>
+  [...new Set(vessels.flatMap(({ tags }) => tags))].sort((a, b) => a.localeCompare(b, 'en'));
+
+/** The vessels as a file for spreadsheets (RFC 4180). */
+export function toCsv(vessels: readonly FleetLine[]): string {
+  const cell = (value: string | number | null | undefined) => {
+    const text = String(value ?? '');
+    // No spreadsheet is to take a name for a formula.
+    const safe = /^[=+\-@\t\r]/.test(text) && Number.isNaN(Number(text)) ? `'${text}` : text;
+    return /[",\r\n]/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
+  };
+  const rows = vessels.map((vessel) => {
+    const ahead = worstAhead(vessel);
+    return [
+      ...[vessel.name, vessel.imo_number, vessel.call_sign, vessel.tags.join(' ')],
+      ...[vessel.alert?.summary, vessel.open_alerts],
+      ...[ahead?.worst.deviation_deg, ahead?.worst.compass_deg, vessel.model?.rms_deg],
+      ...[vessel.last_upload_at, vessel.position?.lat, vessel.position?.lon],
+      ...[vessel.due?.urgency, vessel.due?.urgency === 'unknown' ? '' : vessel.due?.on],
+      ...[vessel.inHand?.state, vessel.next_call?.port, vessel.next_call?.eta],
+    ].map(cell);
+  });
+  return [text.fleet.csvColumns.map(cell), ...rows].map((row) => row.join(',')).join('\r\n');
 }
 
 /** Another column's usual order first, and then its reverse. */

@@ -8,7 +8,7 @@ import { severities } from './alerts';
 import { plainly } from './plainly';
 import * as text from './text';
 
-const states = ['raised', 'acknowledged'] as const;
+const states = ['raised', 'acknowledged', 'mine', 'snoozed'] as const;
 type OpenState = (typeof states)[number];
 
 export interface InboxQuery {
@@ -25,7 +25,11 @@ export const everyAlert: InboxQuery = { search: '', state: '', severity: '', cau
 export const openStates: readonly OpenState[] = states;
 
 /** The alerts that a query asks for, as they stood. What is over is in no state to be asked for. */
-export function matching(alerts: readonly Alert[], query: InboxQuery): Alert[] {
+export function matching(
+  alerts: readonly Alert[],
+  query: InboxQuery,
+  reader: { me: string; now: Date } = { me: '', now: new Date(0) },
+): Alert[] {
   const words = plainly(query.search).split(/\s+/).filter(Boolean);
   const says = (alert: Alert) => {
     const hay = plainly(`${alert.vessel_name} ${alert.compass_name}`);
@@ -33,11 +37,28 @@ export function matching(alerts: readonly Alert[], query: InboxQuery): Alert[] {
   };
   return alerts.filter(
     (alert) =>
-      (query.state === '' || alert.state === 'cleared' || alert.state === query.state) &&
+      isIn(query.state, alert, reader) &&
       (query.severity === '' || alert.severity === query.severity) &&
       (query.cause === '' || alert.cause === query.cause) &&
       says(alert),
   );
+}
+
+/** Whether an alert is postponed at a time. */
+export const isSnoozed = ({ snoozed_until: until }: Alert, now: Date): boolean =>
+  until !== null && Date.parse(until) > now.getTime();
+
+/** What is postponed is not asked for, but where it is asked for. */
+function isIn(
+  state: OpenState | '',
+  alert: Alert,
+  { me, now }: { me: string; now: Date },
+): boolean {
+  if (alert.state === 'cleared') return true;
+  if (state === 'snoozed') return isSnoozed(alert, now);
+  if (isSnoozed(alert, now)) return false;
+  if (state === 'mine') return alert.assigned_to === me;
+  return state === '' || alert.state === state;
 }
 
 /** In the order in which they stood; each that is new after the one that it follows. */

@@ -48,17 +48,32 @@ fn calls_are_read_from_csv_and_written_back() {
 
 #[test]
 fn a_port_may_stand_by_its_name_and_a_time_without_seconds() {
-    let calls = csv_calls(
-        "vessel,port,eta,etd\nv1,Bilbao,2026-12-01T06:00Z,2026-12-02 18:30+01:00\n",
-    );
+    let calls =
+        csv_calls("vessel,port,eta,etd\nv1,Bilbao,2026-12-01T06:00Z,2026-12-02 18:30+01:00\n");
     assert_eq!(calls[0].port.to_string(), "ESBIO");
     assert_eq!(calls[0].eta.to_string(), "2026-12-01T06:00:00Z");
     assert_eq!(calls[0].etd.to_string(), "2026-12-02T17:30:00Z");
     for (port, eta, complaint) in [
-        ("Rotterdam", "2026-12-01T06:00Z", "several ports (NLRTM, USRAJ): write the code"),
-        ("Rotterdm", "2026-12-01T06:00Z", "\"Rotterdm\" is neither a UN/LOCODE"),
-        ("Bilbao", "2026-12-01 06:00", "eta: \"2026-12-01 06:00\" has no time zone"),
-        ("Bilbao", "1 Dec 2026", "eta: \"1 Dec 2026\" is not an RFC 3339 time"),
+        (
+            "Rotterdam",
+            "2026-12-01T06:00Z",
+            "several ports (NLRTM, USRAJ): write the code",
+        ),
+        (
+            "Rotterdm",
+            "2026-12-01T06:00Z",
+            "\"Rotterdm\" is neither a UN/LOCODE",
+        ),
+        (
+            "Bilbao",
+            "2026-12-01 06:00",
+            "eta: \"2026-12-01 06:00\" has no time zone",
+        ),
+        (
+            "Bilbao",
+            "1 Dec 2026",
+            "eta: \"1 Dec 2026\" is not an RFC 3339 time",
+        ),
     ] {
         let text = format!("vessel,port,eta,etd\nv1,{port},{eta},2026-12-03T06:00Z\n");
         let said = csv_complaint(&text);

@@ -13,10 +13,12 @@ pub mod event_kinds;
 
 pub mod binnacles;
 pub mod compasses;
+pub mod fleet_views;
 pub mod operators;
 pub mod overview;
 pub mod particulars;
 pub mod settings;
+pub mod tags;
 pub mod vessel_api;
 pub mod vessels;
 

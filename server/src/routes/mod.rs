@@ -17,8 +17,8 @@ use axum::routing::get;
 use binnacle_documents::{card, deviation_book};
 use binnacle_fleet::models::NoModelFields;
 use binnacle_fleet::{
-    alerts, azimuths, binnacles, changes, compasses, deviation_table, enrolment, ingest, logbook,
-    models, operators, overview, particulars, samples, settings, vessel_api,
+    alerts, azimuths, binnacles, changes, compasses, deviation_table, enrolment, fleet_views,
+    ingest, logbook, models, operators, overview, particulars, samples, settings, tags, vessel_api,
 };
 use binnacle_orders::work_orders::NotAdjustableFields;
 use binnacle_orders::{api as orders_api, firms};
@@ -116,6 +116,8 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(firms::router())
         .merge(overview::router())
         .merge(vessel_api::router())
+        .merge(tags::router())
+        .merge(fleet_views::router())
         .merge(compasses::router())
         .merge(binnacles::router())
         .merge(orders_api::router())

@@ -2,7 +2,8 @@
 
 use binnacle_server_testing::alerts::{set_alert_limits, ship_with_model};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{TestServer, passage};
+use binnacle_server_testing::{ApiResponse, Person, TestServer, passage};
+use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
@@ -11,6 +12,7 @@ on_both!(
     the_overview_of_one_vessel_is_its_operators_alone,
     the_overview_comes_in_pages,
     gnss_interference_is_an_alert_with_its_place_until_it_passes,
+    tags_and_saved_views_are_ones_own,
 );
 
 const HOUR_S: f64 = 3_600.0;
@@ -172,5 +174,43 @@ async fn gnss_interference_is_an_alert_with_its_place_until_it_passes(server: Te
     assert_eq!(alert().await, None);
     let over = met().await;
     assert_eq!(over[0]["ended_at"], "2026-11-20T04:00:00Z", "{over}");
+    server.finish().await;
+}
+
+async fn tags_and_saved_views_are_ones_own(server: TestServer) {
+    let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
+    let nao = ada.create_vessel("Nao").await;
+    let path = format!("/vessels/{}/tags", nao["id"].as_str().unwrap());
+    let put = async |person: &Person, path: &str, body: Value| {
+        ApiResponse::send(person.request(Method::PUT, path).json(&body)).await
+    };
+    let tags = json!({ "tags": ["tanker", " Atlantic ", "tanker"] });
+    assert_eq!(put(&eve, &path, tags.clone()).await.problem(), "not-found");
+    put(&ada, &path, tags).await.good();
+    let fleet = ada.get("/fleet").await.good();
+    assert_eq!(fleet["vessels"][0]["tags"], json!(["Atlantic", "tanker"]));
+    let long = json!({ "tags": ["x".repeat(41)] });
+    assert_eq!(put(&ada, &path, long).await.problem(), "invalid");
+    put(&ada, &path, json!({ "tags": [] })).await.good();
+    assert_eq!(
+        ada.get("/fleet").await.good()["vessels"][0]["tags"],
+        json!([])
+    );
+
+    let views = json!({ "items": [
+        { "name": "Tankers", "search": "?tag=tanker" },
+        { "name": "All", "search": "" },
+    ] });
+    put(&ada, "/me/fleet-views", views).await.good();
+    let saved = ada.get("/me/fleet-views").await.good();
+    let names = [&saved["items"][0]["name"], &saved["items"][1]["name"]];
+    assert_eq!(names, ["All", "Tankers"]);
+    let viewer = ada.viewer(&server).await;
+    for other in [&viewer, &eve] {
+        assert_eq!(
+            other.get("/me/fleet-views").await.good()["items"],
+            json!([])
+        );
+    }
     server.finish().await;
 }

@@ -180,7 +180,10 @@ async fn amend(person: &Person, vessel: &Value, body: Value) -> ApiResponse {
 
 async fn an_imo_number_is_one_vessels_within_an_operator(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
-    let nao = ada.post("/vessels", &numbered("Nao", "9074729")).await.good();
+    let nao = ada
+        .post("/vessels", &numbered("Nao", "9074729"))
+        .await
+        .good();
     let second = ada.post("/vessels", &numbered("Kogge", "9074729")).await;
     assert_eq!(second.problem(), "invalid");
     let detail = second.json()["detail"].as_str().unwrap().to_owned();
@@ -188,17 +191,25 @@ async fn an_imo_number_is_one_vessels_within_an_operator(server: TestServer) {
     let kogge = ada.create_vessel("Kogge").await;
     let amended = amend(&ada, &kogge, json!({ "imo_number": "9074729" })).await;
     assert_eq!(amended.problem(), "invalid");
-    amend(&ada, &nao, json!({ "imo_number": "9074729", "name": "Nao Victoria" }))
+    amend(
+        &ada,
+        &nao,
+        json!({ "imo_number": "9074729", "name": "Nao Victoria" }),
+    )
+    .await
+    .good();
+    // A vessel that was sold is two operators'.
+    eve.post("/vessels", &numbered("Nao", "9074729"))
         .await
         .good();
-    // A vessel that was sold is two operators'.
-    eve.post("/vessels", &numbered("Nao", "9074729")).await.good();
     server.finish().await;
 }
 
 async fn duplicate_imo_numbers_from_before_are_kept_until_someone_amends_them(server: TestServer) {
     let ada = server.admin("ada").await;
-    ada.post("/vessels", &numbered("Nao", "9074729")).await.good();
+    ada.post("/vessels", &numbered("Nao", "9074729"))
+        .await
+        .good();
     let other = ada.create_vessel("Other Nao").await;
     // As before the migration, with a duplicate; then its statements again.
     for before in [
@@ -223,7 +234,9 @@ async fn duplicate_imo_numbers_from_before_are_kept_until_someone_amends_them(se
     }
     // The duplicate may be renamed, and gets a number of its own.
     amend(&ada, &other, json!({ "name": "Kogge" })).await.good();
-    amend(&ada, &other, json!({ "imo_number": "9211561" })).await.good();
+    amend(&ada, &other, json!({ "imo_number": "9211561" }))
+        .await
+        .good();
     let back = amend(&ada, &other, json!({ "imo_number": "9074729" })).await;
     assert_eq!(back.problem(), "invalid");
     server.finish().await;
@@ -252,7 +265,10 @@ async fn a_file_of_vessels_is_entered_whole_or_not_at_all(server: TestServer) {
     assert_eq!((good.status, good.good()), (201, json!({ "created": 2 })));
     let listed = ada.get("/vessels").await.good();
     let named = |at: usize| listed["items"][at]["name"].as_str().unwrap();
-    assert_eq!([named(0), named(1), named(2)], ["Kogge", "Nao Victoria", "Hulk"]);
+    assert_eq!(
+        [named(0), named(1), named(2)],
+        ["Kogge", "Nao Victoria", "Hulk"]
+    );
     assert_eq!(listed["items"][1]["flag"], "ES");
     assert_eq!(listed["items"][1]["compasses"].as_array().unwrap().len(), 1);
     for (text, message) in [

@@ -49,12 +49,18 @@ async fn an_empty_server_is_set_up_with_a_printed_code(server: TestServer) {
     let code = print_code(&server).await.unwrap();
     let mut weak = first(&code);
     weak["password"] = json!("armada del sur");
-    assert_eq!(send(&server, "/first-run", &weak).await.problem(), "invalid");
+    assert_eq!(
+        send(&server, "/first-run", &weak).await.problem(),
+        "invalid"
+    );
     let made = send(&server, "/first-run", &first(&code.to_lowercase())).await;
     assert_eq!(made.good()["email"], "ada@example.com");
     let signed_in = try_sign_in(&server, "ada@example.com", "seven gulls over the quay").await;
     let me = signed_in.good();
-    assert_eq!((&me["role"], &me["operator_name"]), (&json!("admin"), &json!("Armada del Sur")));
+    assert_eq!(
+        (&me["role"], &me["operator_name"]),
+        (&json!("admin"), &json!("Armada del Sur"))
+    );
     assert_eq!(is_open(&server).await, false);
     let again = send(&server, "/first-run", &first(&code)).await;
     assert_eq!(again.problem(), "wrong-state");
@@ -74,12 +80,18 @@ async fn a_set_up_code_expires_and_only_an_empty_server_prints_one(server: TestS
 async fn an_operators_own_firm_is_seen_by_nobody_else_until_it_is_connected(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     let root = ada.platform_admin(&server).await;
-    let firm = ada.post("/firms", &json!({ "name": "Nervión" })).await.good();
+    let firm = ada
+        .post("/firms", &json!({ "name": "Nervión" }))
+        .await
+        .good();
     assert_eq!(firm["is_own"], true);
     let id = firm["id"].as_str().unwrap();
     let users = format!("/firms/{id}/users");
     let rosa = json!({ "name": "Rosa Sáez", "email": "rosa@nervion.example" });
-    assert_eq!(eve.get(&format!("/firms/{id}")).await.problem(), "not-found");
+    assert_eq!(
+        eve.get(&format!("/firms/{id}")).await.problem(),
+        "not-found"
+    );
     assert_eq!(eve.post(&users, &rosa).await.problem(), "not-found");
     let invited = ada.post(&users, &rosa).await.good();
     let accepted = json!({ "code": invited["code"], "password": "seven gulls over the quay" });
@@ -89,7 +101,10 @@ async fn an_operators_own_firm_is_seen_by_nobody_else_until_it_is_connected(serv
     let engage = format!("/operators/{}/firms/{id}", eve.operator);
     let request = root.request(reqwest::Method::PUT, &engage);
     assert_eq!(ApiResponse::send(request).await.status, 204);
-    assert_eq!(eve.get(&format!("/firms/{id}")).await.good()["is_own"], false);
+    assert_eq!(
+        eve.get(&format!("/firms/{id}")).await.good()["is_own"],
+        false
+    );
     // What others work with too is the platform's business.
     let other = json!({ "name": "M. Etxeberria", "email": "m@nervion.example" });
     assert_eq!(ada.post(&users, &other).await.problem(), "forbidden");
@@ -100,7 +115,10 @@ async fn an_operators_own_firm_is_seen_by_nobody_else_until_it_is_connected(serv
 async fn a_platform_admin_invites_a_companys_first_user(server: TestServer) {
     let ada = server.admin("ada").await;
     let root = ada.platform_admin(&server).await;
-    let made = root.post("/operators", &json!({ "name": "Elcano" })).await.good();
+    let made = root
+        .post("/operators", &json!({ "name": "Elcano" }))
+        .await
+        .good();
     let users = format!("/operators/{}/users", made["id"].as_str().unwrap());
     let juan = json!({ "name": "Juan", "email": "juan@elcano.example" });
     assert_eq!(ada.post(&users, &juan).await.problem(), "forbidden");
@@ -164,6 +182,8 @@ fn mailed_code(relay: &Relay, address: &str) -> String {
     let letters = relay.letters();
     let mut to = letters.iter().filter(|letter| letter.to == [address]);
     let text = &to.next().unwrap().text;
-    let (_, code) = text.split_once("https://binnacle.example/invitation#").unwrap();
+    let (_, code) = text
+        .split_once("https://binnacle.example/invitation#")
+        .unwrap();
     code.lines().next().unwrap().trim().to_owned()
 }

@@ -120,9 +120,9 @@ export const fleet = {
       await page.waitForURL(/\/alerts#/);
       await page.goBack();
       await page.getByRole('combobox', { name: /^Show/ }).selectOption('attention');
-      const never = needs.getByRole('link', { name: 'no adjustment on record' });
-      await never.first().click();
-      await page.waitForURL(/\/vessels\/[0-9a-f-]{36}$/);
+      const due = needs.getByRole('link', { name: /^(not scheduled|no adjustment on record)$/ });
+      await due.first().click();
+      await page.waitForURL(/\/(schedule#|vessels\/)[0-9a-f-]{36}$/);
     },
   },
 

@@ -170,6 +170,7 @@ test('the list shows side, heading and band, and what is not there yet', () => {
     position: { lat: -33.9, lon: 18.4, at: '2026-11-01T06:00:00Z' },
     track: [],
     interference: [],
+    tags: [],
     model: { version: 2, rms_deg: 0.42, data_until: '2026-11-01T06:00:00Z', cautions: 1 },
     worst: { compass_deg: 45, deviation_deg: -6.2, band95_deg: 0.4 },
     open_alerts: 3,

@@ -21,12 +21,40 @@ export const alerts = {
   confirmClear: 'Clear the alert',
   saidAcknowledged: 'The alert is acknowledged.',
   saidCleared: 'The alert is cleared.',
+  handling: {
+    assigned: (name: string) => `${name} sees to it`,
+    unassigned: 'Nobody is assigned',
+    assign: 'Assign to me',
+    unassign: 'Unassign me',
+    snoozed: (until: string) => `postponed until ${until}`,
+    snooze: (days: number) =>
+      days === 1
+        ? 'Snooze for a day'
+        : days === 7
+          ? 'Snooze for a week'
+          : `Snooze for ${days} days`,
+    wake: 'End the snooze',
+    comments: 'Comments',
+    none: 'No comment yet.',
+    comment: 'Comment',
+    commentMissing: 'Write a comment.',
+    say: 'Add the comment',
+  },
+  acknowledgeAll: (n: number) => (n === 1 ? 'Acknowledge the alert shown' : `Acknowledge all ${n}`),
+  acknowledgeAllSure: 'The alerts stay listed, with their causes, as acknowledged.',
+  saidAllAcknowledged: (n: number) =>
+    n === 1 ? '1 alert is acknowledged.' : `${n} alerts are acknowledged.`,
   filter: {
     search: 'Vessel',
     searchHint: 'Name of the vessel or compass',
     state: 'State',
     anyState: 'Open',
-    states: { raised: 'To acknowledge', acknowledged: 'Acknowledged' },
+    states: {
+      raised: 'To acknowledge',
+      acknowledged: 'Acknowledged',
+      mine: 'Assigned to me',
+      snoozed: 'Snoozed',
+    },
     severity: 'Severity',
     anySeverity: 'Any severity',
     cause: 'Cause',

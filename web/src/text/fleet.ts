@@ -72,7 +72,22 @@ export const fleet = {
   save: 'Save',
   removeView: (name: string) => `Remove the view “${name}”`,
   remove: 'Remove',
-  viewsKept: 'Views are kept in this browser.',
+  viewsKept: 'Views are saved with your account.',
+  csv: 'CSV',
+  csvName: 'fleet.csv',
+  csvColumns: [
+    ...['Vessel', 'IMO number', 'Call sign', 'Tags', 'Alert', 'Unacknowledged alerts'],
+    ...['Largest deviation (°)', 'on compass heading (°)', 'Residuals (°)'],
+    ...['Last upload', 'Latitude', 'Longitude', 'Urgency', 'Due', 'Order', 'Next port', 'ETA'],
+  ],
+  tag: 'Tag',
+  anyTag: 'Any tag',
+  tagging: 'Tag…',
+  tagOf: (n: number) => (n === 1 ? 'Tag for the vessel shown' : `Tag for the ${n} vessels shown`),
+  tagAdd: 'Add the tag',
+  tagRemove: 'Remove the tag',
+  tagMissing: 'Write a tag.',
+  tagged: (n: number) => (n === 1 ? '1 vessel changed.' : `${n} vessels changed.`),
 };
 
 export const map = {

@@ -258,7 +258,9 @@ fn find_port(text: &str) -> Result<PortCode, String> {
         ref several => {
             let codes: Vec<String> = several.iter().map(|port| port.code.to_string()).collect();
             let codes = codes.join(", ");
-            Err(format!("{text:?} is the name of several ports ({codes}): write the code"))
+            Err(format!(
+                "{text:?} is the name of several ports ({codes}): write the code"
+            ))
         }
     }
 }
@@ -301,9 +303,8 @@ fn parse_row(
         Some(unescape_formula(&cells[at])).filter(|text| !text.is_empty())
     };
     let needed = |name: &str| cell(name).ok_or_else(|| FileError::new(line, name, "is empty"));
-    let instant = |name: &str| {
-        parse_instant(needed(name)?).map_err(|what| FileError::new(line, name, what))
-    };
+    let instant =
+        |name: &str| parse_instant(needed(name)?).map_err(|what| FileError::new(line, name, what));
     // Where semicolons separate fields, a comma may be the decimal point.
     let read = |text: &str| match separator {
         ';' => text.replace(',', ".").parse::<f64>(),

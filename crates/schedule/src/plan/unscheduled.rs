@@ -34,7 +34,9 @@ pub(super) fn unscheduled(
     let open = jobs.iter().zip(made).zip(&candidates.problem.unmet);
     let open = open.filter(|((job, candidate), _)| match candidate {
         None => true,
-        Some(candidate) => candidate.quote.late_days > 0 && !job.may_be_any_day(input.now.utc_date()),
+        Some(candidate) => {
+            candidate.quote.late_days > 0 && !job.may_be_any_day(input.now.utc_date())
+        }
     });
     open.map(|((job, candidate), unmet)| {
         let mut explanation = Explanation {

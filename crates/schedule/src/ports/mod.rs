@@ -207,7 +207,10 @@ mod tests {
     #[test]
     fn a_port_is_found_by_its_code_or_its_name_and_a_shared_name_finds_all() {
         let codes = |words: &str| -> Vec<String> {
-            named(words).iter().map(|port| port.code.to_string()).collect()
+            named(words)
+                .iter()
+                .map(|port| port.code.to_string())
+                .collect()
         };
         for words in ["ESBIO", "es bio", "Bilbao", "bilbao", "Bilbao (ESBIO)"] {
             assert_eq!(codes(words), ["ESBIO"], "{words}");

@@ -2,7 +2,7 @@
 
 use super::cause::Cause;
 use super::clearing::OVER;
-use binnacle_platform::ids::{AlertId, CompassId, VesselId};
+use binnacle_platform::ids::{AlertId, CompassId, UserId, VesselId};
 use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
@@ -80,6 +80,15 @@ pub struct Alert {
     /// Note of that person.
     #[schema(required)]
     pub acknowledgement_note: Option<String>,
+    /// User who is to see to it.
+    #[schema(required)]
+    pub assigned_to: Option<UserId>,
+    /// Name of that user.
+    #[schema(required)]
+    pub assigned_name: Option<String>,
+    /// Time until which it was postponed.
+    #[schema(required)]
+    pub snoozed_until: Option<Time>,
     /// Time at which it was cleared.
     #[schema(required)]
     pub cleared_at: Option<Time>,

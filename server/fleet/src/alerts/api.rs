@@ -2,6 +2,7 @@
 
 use super::alert::{Alert, State};
 use super::change::{ChangeKind, PendingChange};
+use super::handling;
 use super::publish::publish_changes;
 use super::requests::{Acknowledgement, AlertList, Clearing, Filter};
 use super::store::{self, Remark};
@@ -27,6 +28,7 @@ where
         .routes(routes!(find_alert))
         .routes(routes!(acknowledge_alert))
         .routes(routes!(clear_alert))
+        .merge(handling::router())
 }
 
 /// List the fleet's alerts

@@ -21,6 +21,7 @@ mod causes;
 mod change;
 mod clearing;
 mod desired;
+mod handling;
 pub mod message_kinds;
 mod publish;
 mod reconcile;

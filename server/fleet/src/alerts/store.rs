@@ -44,10 +44,11 @@ pub(super) async fn list(
     rows!(
         db,
         Alert,
-        "SELECT a.*, v.name AS vessel_name, c.name AS compass_name
+        "SELECT a.*, v.name AS vessel_name, c.name AS compass_name, u.name AS assigned_name
          FROM alerts a
          JOIN vessels v ON v.id = a.vessel_id
          JOIN compasses c ON c.vessel_id = a.vessel_id AND c.id = a.compass_id
+         LEFT JOIN users u ON u.id = a.assigned_to
          WHERE v.operator_id = $1 AND a.id < $2
            AND ($3 IS NULL OR a.vessel_id = $3)
            AND ($4 IS NULL OR a.state = $4)
@@ -78,10 +79,11 @@ pub(super) async fn must_find(db: &Db, operator: OperatorId, id: AlertId) -> Res
     row!(
         db,
         Alert,
-        "SELECT a.*, v.name AS vessel_name, c.name AS compass_name
+        "SELECT a.*, v.name AS vessel_name, c.name AS compass_name, u.name AS assigned_name
          FROM alerts a
          JOIN vessels v ON v.id = a.vessel_id
          JOIN compasses c ON c.vessel_id = a.vessel_id AND c.id = a.compass_id
+         LEFT JOIN users u ON u.id = a.assigned_to
          WHERE v.operator_id = $1 AND a.id = $2
          ORDER BY a.id",
         operator,
@@ -95,10 +97,11 @@ pub(super) async fn read(tx: &mut Tx, vessel: VesselId, id: AlertId) -> Result<A
     let found = row!(
         in tx,
         Alert,
-        "SELECT a.*, v.name AS vessel_name, c.name AS compass_name
+        "SELECT a.*, v.name AS vessel_name, c.name AS compass_name, u.name AS assigned_name
          FROM alerts a
          JOIN vessels v ON v.id = a.vessel_id
          JOIN compasses c ON c.vessel_id = a.vessel_id AND c.id = a.compass_id
+         LEFT JOIN users u ON u.id = a.assigned_to
          WHERE a.vessel_id = $1 AND a.id = $2
          ORDER BY a.id",
         vessel,
@@ -199,6 +202,14 @@ pub(super) async fn update(
         now,
         Some(desired.since).filter(|_| desired.cause.row().is_redated)
     )?;
+    if desired.severity > known.severity {
+        execute!(
+            &mut *tx,
+            "UPDATE alerts SET snoozed_until = NULL WHERE vessel_id = $1 AND id = $2",
+            vessel,
+            known.id
+        )?;
+    }
     if desired.severity > known.severity && known.state == State::Acknowledged {
         execute!(
             &mut *tx,

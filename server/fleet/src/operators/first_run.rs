@@ -109,8 +109,15 @@ async fn begin(
     let operator = OperatorId::new();
     store::insert(&mut tx, operator, &operator_name, now).await?;
     let tenant = Tenant::Operator(operator);
-    let created =
-        session::create_user(&mut tx, Some(tenant), &email, &name, Role::Admin, &hash, now);
+    let created = session::create_user(
+        &mut tx,
+        Some(tenant),
+        &email,
+        &name,
+        Role::Admin,
+        &hash,
+        now,
+    );
     let id = created.await?;
     // Two requests with two codes: the second one sees the first one's user.
     if has_others(&mut tx, id).await? {

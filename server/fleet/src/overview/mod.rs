@@ -72,6 +72,8 @@ pub struct FleetVessel {
     /// Its call sign.
     #[schema(required)]
     pub call_sign: Option<String>,
+    /// Its tags, in alphabetical order.
+    pub tags: Vec<String>,
     /// Time of its last batch.
     #[schema(required)]
     pub last_upload_at: Option<Time>,
@@ -181,6 +183,10 @@ fn assemble(found: store::FleetRecords, page: &Page) -> Fleet {
     for met in found.interference {
         interference.entry(met.vessel_id).or_default().push(met);
     }
+    let mut tags: HashMap<VesselId, Vec<String>> = HashMap::new();
+    for (vessel, tag) in found.tags {
+        tags.entry(vessel).or_default().push(tag);
+    }
     let vessels = listed.items.into_iter().map(|row| {
         let model = models.remove(&row.id);
         let track = tracks.remove(&row.id).map(|stored| stored.track);
@@ -188,8 +194,10 @@ fn assemble(found: store::FleetRecords, page: &Page) -> Fleet {
         let call = calls.remove(&row.id);
         let call = call.map(|call| NextCall::from_port_call(call, model.as_ref()));
         let met = interference.remove(&row.id).unwrap_or_default();
+        let tags = tags.remove(&row.id).unwrap_or_default();
         FleetVessel {
             interference: met,
+            tags,
             ..row.with(model.as_ref(), track.unwrap_or_default(), call, alerts)
         }
     });
@@ -225,6 +233,7 @@ impl VesselRow {
             last_upload_at: self.last_upload_at,
             track,
             interference: Vec::new(),
+            tags: Vec::new(),
             next_call,
             worst: model.and_then(StoredModel::worst).map(rounded),
             model: model.map(FleetModel::from_model),

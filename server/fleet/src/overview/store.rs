@@ -1,8 +1,9 @@
-//! Records of a page of a fleet in the database, in six queries.
+//! Records of a page of a fleet in the database, in seven queries.
 
 use crate::alerts::{Cause, State};
 use crate::analysis::{Interference, Track, recent_interference};
 use crate::models::{self, StoredModel};
+use crate::tags;
 use crate::vessels::LastPosition;
 use binnacle_platform::db::{Db, Result, rows};
 use binnacle_platform::ids::{AlertId, OperatorId, VesselId};
@@ -18,12 +19,14 @@ pub(super) struct FleetRecords {
     pub(super) models: Vec<StoredModel>,
     /// Tracks, in the same order.
     pub(super) tracks: Vec<StoredTrack>,
-    /// Alerts that are not cleared.
+    /// Alerts that are neither cleared nor postponed.
     pub(super) alerts: Vec<WorstAlert>,
     /// Each vessel's first port call that is not over.
     pub(super) calls: Vec<NextPortCall>,
     /// GNSS interference of late.
     pub(super) interference: Vec<Interference>,
+    /// Tags of the vessels.
+    pub(super) tags: Vec<(VesselId, String)>,
 }
 
 /// A vessel's own columns.
@@ -47,7 +50,7 @@ pub(super) struct StoredTrack {
     pub(super) track: Track,
 }
 
-/// An alert that is not cleared.
+/// An alert that is neither cleared nor postponed.
 #[derive(sqlx::FromRow)]
 pub(super) struct WorstAlert {
     pub(super) id: AlertId,
@@ -117,9 +120,10 @@ pub(super) async fn find(db: &Db, which: &Which, now: Time) -> Result<FleetRecor
         vessels,
         models: models::current_of_fleet(db, operator, first, last).await?,
         tracks,
-        alerts: open_alerts(db, operator, first, last).await?,
+        alerts: open_alerts(db, operator, first, last, now).await?,
         calls: next_calls(db, operator, first, last, now).await?,
         interference: recent_interference(db, operator, first, last, now).await?,
+        tags: tags::of_fleet(db, operator, first, last).await?,
     })
 }
 
@@ -168,6 +172,7 @@ async fn open_alerts(
     operator: OperatorId,
     first: VesselId,
     last: VesselId,
+    now: Time,
 ) -> Result<Vec<WorstAlert>> {
     rows!(
         db,
@@ -176,10 +181,12 @@ async fn open_alerts(
          FROM alerts a
          JOIN vessels v ON v.id = a.vessel_id
          WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3 AND a.state <> 'cleared'
+           AND (a.snoozed_until IS NULL OR a.snoozed_until <= $4)
          ORDER BY a.vessel_id, a.id",
         operator,
         first,
-        last
+        last,
+        now
     )
 }
 

@@ -2,9 +2,8 @@
 //! storage of what they found.
 
 use super::facts::{Completed, Facts, Stored, UpcomingCall, Work, assess_compass};
-use super::order::{OpenOrder, load_open_orders};
+use super::order::OpenOrder;
 use super::over_limit_since::{self, DeviationHistory};
-use super::scope::{CompassKey, Which};
 use crate::port_calls;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_fleet::analysis::Findings;
@@ -21,6 +20,17 @@ use binnacle_platform::time::Time;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use uuid::Uuid;
+
+/// Vessel and compass: the key of what is stored of a compass.
+type CompassKey = (VesselId, CompassId);
+
+/// Vessels of an operator in a range of ids.
+#[derive(Clone, Copy)]
+struct Which {
+    operator: OperatorId,
+    first: VesselId,
+    last: VesselId,
+}
 
 /// Stored records of a fleet, by vessel or by compass.
 struct FleetRecords {
@@ -243,6 +253,35 @@ async fn load_completed(db: &Db, which: Which) -> Result<BTreeMap<CompassKey, Co
         ((vessel, compass), completed)
     };
     // Rows are in order of time: the last of a compass stays.
+    Ok(found.into_iter().map(keyed).collect())
+}
+
+/// Returns the last opened order of each compass that is not over.
+async fn load_open_orders(db: &Db, which: Which) -> Result<BTreeMap<CompassKey, OpenOrder>> {
+    let found = rows!(
+        db,
+        (VesselId, CompassId, OrderId, State, String, Time, Time),
+        "SELECT o.vessel_id, o.compass_id, o.id, o.state, o.port, o.planned_at,
+                o.planned_at + o.job_us
+         FROM work_orders o JOIN vessels v ON v.id = o.vessel_id
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
+           AND o.state NOT IN ('closed', 'closed_unverified', 'cancelled')
+         ORDER BY o.vessel_id, o.id",
+        which.operator,
+        which.first,
+        which.last
+    )?;
+    let keyed = |(vessel, compass, id, state, port, from, until)| {
+        let order = OpenOrder {
+            id,
+            state,
+            port,
+            from,
+            until,
+        };
+        ((vessel, compass), order)
+    };
+    // Ids are in the order of opening: the last of a compass stays.
     Ok(found.into_iter().map(keyed).collect())
 }
 

@@ -9,7 +9,6 @@ mod need;
 mod order;
 mod over_limit_since;
 mod prediction;
-mod scope;
 
 pub use facts::Facts;
 pub use load::{load_facts, store_deviation_histories};

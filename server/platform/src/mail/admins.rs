@@ -21,7 +21,10 @@ impl Mailer {
         let admins = platform_admins(db).await?;
         let mut problem = Ok(());
         for (address,) in &admins {
-            let sent = self.sender().write(address, subject, &[text], "", now).await;
+            let sent = self
+                .sender()
+                .write(address, subject, &[text], "", now)
+                .await;
             problem = problem.and(sent.with_context(|| format!("no letter to {address}")));
         }
         problem.map(|()| admins.len())

@@ -270,7 +270,10 @@ impl Letter<'_> {
             .write(self.address, self.subject, self.paragraphs, &path, now)
             .await;
         if let Err(error) = &sent {
-            warn!(error = format!("{error:#}"), "a letter with a code was not sent");
+            warn!(
+                error = format!("{error:#}"),
+                "a letter with a code was not sent"
+            );
         }
         sent.is_ok()
     }
@@ -375,12 +378,7 @@ async fn end_access(tx: &mut Tx, user: UserId) -> Result<()> {
     Ok(())
 }
 
-async fn insert(
-    tx: &mut Tx,
-    user: UserId,
-    now: Time,
-    valid_for_s: f64,
-) -> Result<(String, Time)> {
+async fn insert(tx: &mut Tx, user: UserId, now: Time, valid_for_s: f64) -> Result<(String, Time)> {
     let code = secret::new_code();
     let expires_at = Time(now.0.plus_seconds(valid_for_s));
     execute!(

@@ -15,6 +15,7 @@ on_both!(
     a_moved_compass_is_due_like_a_new_one,
     planned_work_does_not_count_as_done,
     deviation_over_its_limit_becomes_overdue,
+    a_need_says_how_far_the_order_of_its_compass_has_come,
     predicted_deviation_at_a_next_port_brings_a_due_date_forward,
     deviation_over_the_vessels_own_limit_brings_a_due_date_forward,
     particulars_are_validated_and_belong_to_the_operator,
@@ -48,6 +49,29 @@ async fn a_compass_without_a_record_is_unknown_and_says_by_which_rule(server: Te
     assert_eq!(rule["second_hand"], true);
     let all = ["flag_state", "gross_tonnage", "trade", "deviation_record"];
     assert_eq!(need["not_known"], json!(all));
+    server.finish().await;
+}
+
+async fn a_need_says_how_far_the_order_of_its_compass_has_come(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ada.create_vessel("Nao").await;
+    assert_eq!(need(&ada, &nao).await["order"], Value::Null);
+    let order = json!({ "vessel_id": nao["id"], "compass_id": nao["compasses"][0]["id"],
+                        "port": "Bilbao", "planned_at": "2026-11-22T09:00:00Z" });
+    let order = ada.post("/work-orders", &order).await.good();
+    let open = need(&ada, &nao).await["order"].clone();
+    assert_eq!(
+        (&open["id"], &open["state"]),
+        (&order["id"], &json!("planned"))
+    );
+    assert_eq!(open["until"], "2026-11-22T12:00:00Z");
+    let orders = format!("/work-orders/{}", order["id"].as_str().unwrap());
+    let on_board = format!("{orders}/on-board");
+    ada.post(&on_board, &json!({})).await.good();
+    assert_eq!(need(&ada, &nao).await["order"]["state"], "on_board");
+    let cancel = json!({ "text": "the call is too short" });
+    ada.post(&format!("{orders}/cancel"), &cancel).await.good();
+    assert_eq!(need(&ada, &nao).await["order"], Value::Null);
     server.finish().await;
 }
 
