@@ -60,7 +60,7 @@ pub fn lambda_by_two_headings(
         let expected = ExpectedField::new(model, earth, reading)?;
         let (sin, cos) = reading.magnetic().radians().sin_cos();
         let noise = expected.part_errors(reading, earth, usual_lambda);
-        for axis in 0..2 {
+        for (axis, noise) in noise.into_iter().enumerate() {
             let row = 2 * index + axis;
             measured[row] = reading.field_nt()[axis];
             design[(row, 0)] = expected.u[axis];
@@ -69,8 +69,8 @@ pub fn lambda_by_two_headings(
             for (unknown, slope) in expected.by_unknown.iter().enumerate() {
                 slopes[(row, unknown)] = usual_lambda * slope[axis];
             }
-            for other in 0..2 {
-                errors[(row, 2 * index + other)] = noise[axis][other];
+            for (other, part) in noise.into_iter().enumerate() {
+                errors[(row, 2 * index + other)] = part;
             }
         }
     }

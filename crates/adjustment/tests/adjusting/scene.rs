@@ -18,6 +18,7 @@ use binnacle_compass::time::Timestamp;
 const CARD_SD_DEG: f64 = 0.4;
 
 /// Facts that the planner does not know, and whether a second heading was read.
+#[allow(clippy::struct_excessive_bools)] // one for each fact, by name
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hidden {
     /// Share of their stated moment that all magnets have.
