@@ -19,14 +19,7 @@ export interface Ahead {
   compassDeg: number | null;
   /** What the server has to answer before anything else can be done. */
   waitingFor:
-    | 'as_found'
-    | 'reading'
-    | 'plan'
-    | 'step'
-    | 'settings'
-    | 'second_reading'
-    | 'completion'
-    | null;
+    'as_found' | 'reading' | 'plan' | 'step' | 'settings' | 'second_reading' | 'completion' | null;
 }
 
 /** An angle in (−180°, 180°]. */

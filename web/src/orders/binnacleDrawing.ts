@@ -118,7 +118,10 @@ function drawn(
       const middle = (place.side === 'forward' ? 1 : -1) * (holder?.axis_mm ?? 0);
       // Its upper pole, a twelfth of the length from its end, is at the card's height.
       const y = -place.length_mm / 12;
-      return { kind: 'bar', box: { x: middle - wide / 2, y, width: wide, height: place.length_mm } };
+      return {
+        kind: 'bar',
+        box: { x: middle - wide / 2, y, width: wide, height: place.length_mm },
+      };
     }
   }
 }

@@ -36,12 +36,7 @@ export function band95(model: Model, compassDeg: number, field: Field): number |
   return band95By(model, coefficients(model, field), compassDeg, field);
 }
 
-function band95By(
-  model: Model,
-  by: Coefficients,
-  compassDeg: number,
-  field: Field,
-): number | null {
+function band95By(model: Model, by: Coefficients, compassDeg: number, field: Field): number | null {
   const slopes = slopesOf(by, compassDeg, field);
   if (!slopes || !model.covariance) return null;
   const change = needlesChange(model, field.h_nt);

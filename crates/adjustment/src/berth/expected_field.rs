@@ -8,7 +8,7 @@ use binnacle_compass::model::{Covariance, Model, Parameters};
 use binnacle_compass::ship::{EarthField, PARAMETERS};
 
 /// Seven parameters and the constant.
-pub const UNKNOWNS: usize = PARAMETERS + 1;
+pub(super) const UNKNOWNS: usize = PARAMETERS + 1;
 
 /// Least directive force, as a share of its mean; with less, direction and strength are
 /// small differences of large numbers.

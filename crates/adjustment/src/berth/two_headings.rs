@@ -1,8 +1,8 @@
-//! λ and the field of the quay from readings on two headings of one berth.
+//! λ from readings at two headings of one berth, and whether they agree.
 //!
-//! On one heading a field along the needle changes the strength, like another λ. Steel on the
-//! quay stays where it is when the ship is shifted to another heading, while the ship's own
-//! field turns with her: the four parts of two readings determine λ and the quay's field.
+//! On one heading a field along the needle changes the strength, like another λ. Shifted, the
+//! ship lies otherwise to the steel of the quay, and her own field turns with her: one λ then
+//! explains the four parts of both readings only where neither adds a field of its own.
 
 use super::error::BerthError;
 use super::expected_field::{ExpectedField, UNKNOWNS};
@@ -11,37 +11,29 @@ use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
 use nalgebra::{SMatrix, SVector};
 
-/// Standard deviation of the quay's field in each part, nT: unflagged steel of 4 µT is usual
-/// enough to be expected.
-const QUAY_SD_NT: f64 = 3_000.0;
 /// Parts of two readings.
 const PARTS: usize = 4;
-/// λ and the quay's field north and east.
-const WANTED: usize = 3;
-/// 99.7 % of χ² with one and two degrees of freedom.
-const CHI_SQUARED_997: [f64; 2] = [8.81, 11.62];
+/// 99.7 % of χ² with the three degrees of freedom that λ leaves.
+const CHI_SQUARED_997: f64 = 13.93;
 
-/// λ and the quay's field from readings on two headings.
+/// λ from readings on two headings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoHeadings {
-    /// λ, free of the quay's field.
+    /// λ by both readings.
     pub lambda: f64,
     /// Standard error of λ, without the magnetometer's scale.
     pub standard_error: f64,
     /// Covariance of λ with each of the model's unknowns.
     pub with_model: [f64; UNKNOWNS],
-    /// Field of the quay, magnetic north and east, nT.
-    pub quay_nt: [f64; 2],
-    /// The readings differ from the model's field by more than their errors, unless the quay
-    /// adds a field.
-    pub is_quay_seen: bool,
-    /// No field of the quay explains the readings either: the ship has changed, or one of them
-    /// is wrong.
-    pub is_unexplained: bool,
+    /// Field that one λ leaves unexplained in both readings together, nT.
+    pub left_nt: f64,
+    /// True where errors do not explain that field: steel on the quay, a change of the ship
+    /// since the model, or a wrong reading.
+    pub is_foreign: bool,
 }
 
-/// Determines λ and the quay's field by generalised least squares, with an expected size of
-/// the quay's field.
+/// Determines λ by generalised least squares over both readings, for a usual λ in their
+/// errors.
 ///
 /// # Errors
 /// Fails when the model or the earth's field is invalid, or the model leaves no directive
@@ -52,25 +44,22 @@ pub fn lambda_by_two_headings(
     readings: [&BerthReading; 2],
     usual_lambda: f64,
 ) -> Result<TwoHeadings, BerthError> {
-    let mut design = SMatrix::<f64, PARTS, WANTED>::zeros();
+    let mut over_lambda = SVector::<f64, PARTS>::zeros();
     let mut measured = SVector::<f64, PARTS>::zeros();
     let mut slopes = SMatrix::<f64, PARTS, UNKNOWNS>::zeros();
     let mut errors = SMatrix::<f64, PARTS, PARTS>::zeros();
     for (index, reading) in readings.into_iter().enumerate() {
         let expected = ExpectedField::new(model, earth, reading)?;
-        let (sin, cos) = reading.magnetic().radians().sin_cos();
         let noise = expected.part_errors(reading, earth, usual_lambda);
-        for axis in 0..2 {
+        for (axis, noise) in noise.into_iter().enumerate() {
             let row = 2 * index + axis;
             measured[row] = reading.field_nt()[axis];
-            design[(row, 0)] = expected.u[axis];
-            let [north, east] = [[cos, sin], [-sin, cos]][axis];
-            (design[(row, 1)], design[(row, 2)]) = (north, east);
+            over_lambda[row] = expected.u[axis];
             for (unknown, slope) in expected.by_unknown.iter().enumerate() {
                 slopes[(row, unknown)] = usual_lambda * slope[axis];
             }
-            for other in 0..2 {
-                errors[(row, 2 * index + other)] = noise[axis][other];
+            for (other, part) in noise.into_iter().enumerate() {
+                errors[(row, 2 * index + other)] = part;
             }
         }
     }
@@ -78,25 +67,16 @@ pub fn lambda_by_two_headings(
     let covariance = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|r, c| covariance[r][c]);
     errors += slopes * covariance * slopes.transpose();
     let inverse = errors.try_inverse().unwrap_or_default();
-    let information = design.transpose() * inverse * design;
-    let quay = SVector::from([0.0, QUAY_SD_NT.powi(-2), QUAY_SD_NT.powi(-2)]);
-    let posterior = information + SMatrix::from_diagonal(&quay);
-    let posterior = posterior.try_inverse().unwrap_or_default();
-    let gain = posterior * design.transpose() * inverse;
-    let found = gain * measured;
-    let squared = |left: SVector<f64, PARTS>| left.dot(&(inverse * left));
-    let strength = design.column(0).into_owned();
-    let alone = strength.dot(&(inverse * measured)) / strength.dot(&(inverse * strength));
-    let free = information.try_inverse().unwrap_or_default() * design.transpose() * inverse;
-    let with_quay = squared(measured - design * (free * measured));
-    let without_quay = squared(measured - strength * alone);
-    let with_model = gain.row(0) * slopes * covariance * -1.0;
+    let variance = over_lambda.dot(&(inverse * over_lambda)).recip();
+    let gain = over_lambda.transpose() * inverse * variance;
+    let lambda = (gain * measured)[0];
+    let left = measured - over_lambda * lambda;
+    let with_model = gain * slopes * covariance * -1.0;
     Ok(TwoHeadings {
-        lambda: found[0],
-        standard_error: posterior[(0, 0)].max(0.0).sqrt(),
+        lambda,
+        standard_error: variance.max(0.0).sqrt(),
         with_model: std::array::from_fn(|unknown| with_model[unknown]),
-        quay_nt: [found[1], found[2]],
-        is_quay_seen: without_quay - with_quay > CHI_SQUARED_997[1],
-        is_unexplained: with_quay > CHI_SQUARED_997[0],
+        left_nt: left.norm(),
+        is_foreign: left.dot(&(inverse * left)) > CHI_SQUARED_997,
     })
 }

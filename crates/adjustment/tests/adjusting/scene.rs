@@ -18,6 +18,7 @@ use binnacle_compass::time::Timestamp;
 const CARD_SD_DEG: f64 = 0.4;
 
 /// Facts that the planner does not know, and whether a second heading was read.
+#[allow(clippy::struct_excessive_bools)] // one for each fact, by name
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hidden {
     /// Share of their stated moment that all magnets have.
@@ -106,7 +107,12 @@ impl Scene {
         let berthed = reading(&mut rng, &standing, place, instruments);
         let shifted = hidden.is_shifted.then(|| {
             let heading = berthed.magnetic_deg + hidden_rng.between(80.0, 280.0);
-            let quay_nt = turned(steel_nt, heading - berthed.magnetic_deg);
+            // She lies otherwise to the steel there.
+            let quay_nt = {
+                let (sin, cos) = hidden_rng.between(0.0, std::f64::consts::TAU).sin_cos();
+                let size_nt = hidden.steel_nt * hidden_rng.unit();
+                [cos * size_nt, sin * size_nt]
+            };
             let there = truth.with(&binnacle.setting).beside(quay_nt);
             reading_on(&mut hidden_rng, &there, place, heading, instruments).reading
         });
@@ -213,12 +219,6 @@ impl Scene {
             limits: Limits::default(),
         }
     }
-}
-
-/// A field that stays where it is, in the axes of a ship that has turned clockwise.
-fn turned([x, y]: [f64; 2], by_deg: f64) -> [f64; 2] {
-    let (sin, cos) = by_deg.to_radians().sin_cos();
-    [x * cos + y * sin, y * cos - x * sin]
 }
 
 /// Writes one tray of the binnacle's magnets with the wrong red end.

@@ -58,13 +58,11 @@ pub enum Refusal {
         /// Description from the model.
         what: String,
     },
-    /// Readings on two headings of the berth contain a field that the model does not: steel on
-    /// the quay, a change of the ship, or a wrong reading.
+    /// One λ does not explain the readings on two headings: steel on the quay, a change of the
+    /// ship since the model, or a wrong reading.
     ForeignField {
-        /// Field that stays where it is when the ship is shifted, nT.
-        quay_nt: f64,
-        /// True when such a field alone does not explain the readings.
-        unexplained: bool,
+        /// Field that is left unexplained, nT.
+        left_nt: f64,
     },
     /// λ contradicts that of an earlier berth.
     OtherLambda {

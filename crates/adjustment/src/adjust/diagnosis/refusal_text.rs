@@ -56,18 +56,11 @@ impl fmt::Display for Refusal {
                 .try_for_each(|m| write!(f, "; it would fit if {m}"))
         };
         match self {
-            Refusal::ForeignField {
-                unexplained: false,
-                quay_nt,
-            } => write!(
+            Refusal::ForeignField { left_nt } => write!(
                 f,
-                "the readings on two headings differ by a field of {:.1} microtesla that does not \
-                 turn with the ship: steel on the quay, a crane or a ship alongside",
-                quay_nt / 1e3
-            ),
-            Refusal::ForeignField { .. } => f.write_str(
-                "the readings on two headings contradict each other: the ship has changed since \
-                 the model, or one of the headings or readings is wrong",
+                "one lambda leaves {:.1} microtesla of the readings on two headings unexplained: \
+                 steel on the quay, a change of the ship since the model, or a wrong reading",
+                left_nt / 1e3
             ),
             Refusal::NoCovariance => {
                 f.write_str("the model has no covariance, so its band is unknown")

@@ -94,7 +94,7 @@ pub struct ReadingForm {
     #[serde(default)]
     pub cargo_on_board: bool,
     /// Reading after the vessel was shifted to another heading of this berth, before anything
-    /// was moved: it separates steel on the quay from λ.
+    /// was moved: it shows steel on the quay that would pass for λ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shifted: Option<ShiftedReading>,
 }

@@ -83,13 +83,11 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
     })
 }
 
-/// Refuses readings on two headings that the model and the errors do not explain.
+/// Refuses readings on two headings that one λ does not explain.
 fn foreign_field(state: &MagneticState<'_>) -> Option<Refusal> {
-    let two = state.two_headings?;
-    let [north, east] = two.quay_nt;
-    (two.is_quay_seen || two.is_unexplained).then(|| Refusal::ForeignField {
-        quay_nt: north.hypot(east),
-        unexplained: two.is_unexplained,
+    let two = state.two_headings.filter(|two| two.is_foreign)?;
+    Some(Refusal::ForeignField {
+        left_nt: two.left_nt,
     })
 }
 

@@ -45,7 +45,10 @@ impl SecondHeading {
         let mut gain_deg = 0.0_f64;
         for sign in [1.0, -1.0] {
             let other = state.with_lambda(state.lambda() * (1.0 + sign * share));
-            let truly = prediction::tables(adjustment, &other, setting)?;
+            // In a weak field such steel leaves no directive force to speak of.
+            let Ok(truly) = prediction::tables(adjustment, &other, setting) else {
+                continue;
+            };
             let (Some(said), Some(truly)) = (as_read.first(), truly.first()) else {
                 continue;
             };

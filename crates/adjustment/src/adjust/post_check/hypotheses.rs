@@ -28,7 +28,7 @@ const HOLES_OFF: [f64; 3] = [0.004, 0.002, 0.002];
 const NOT_DONE: f64 = 0.004;
 /// Prior probability of magnets that stood with the other end than recorded, after someone
 /// confirmed the record.
-const FOUND_OTHERWISE: f64 = 0.01;
+const FOUND_OTHERWISE: f64 = 0.002;
 /// Prior probability of another moment of all magnets of a kind.
 const OTHER_MOMENT: f64 = 0.2;
 /// Standard deviation of that moment, as a share of it.

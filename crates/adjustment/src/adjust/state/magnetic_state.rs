@@ -25,7 +25,7 @@ pub(crate) struct MagneticState<'a> {
     pub(crate) estimate: BerthEstimate,
     joint: JointCovariance,
     pub(crate) drift: FieldDrift,
-    /// λ and the quay's field, if a second heading was read.
+    /// λ by two headings, if a second one was read.
     pub(crate) two_headings: Option<TwoHeadings>,
     lambda: f64,
     base: ShipMagnetism,
