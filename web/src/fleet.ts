@@ -35,6 +35,12 @@ export function arranged(vessels: readonly FleetLine[], query: Query, now: Date)
     .sort((a, b) => sign * compare(a, b, query.sort) || byName(a, b));
 }
 
+/** How many vessels each filter finds. */
+export const countsOf = (vessels: readonly FleetLine[], now: Date): Record<Filter, number> =>
+  Object.fromEntries(
+    filters.map((filter) => [filter, vessels.filter((one) => passes(one, filter, now)).length]),
+  ) as Record<Filter, number>;
+
 function says(vessel: FleetVessel, words: string[]): boolean {
   const hay = plainly([vessel.name, vessel.imo_number, vessel.call_sign].join(' '));
   return words.every((word) => hay.includes(word));

@@ -10,8 +10,7 @@ export const fleet = {
   needs: 'Needs',
   needsNothing: 'nothing',
   needsUnknown: 'not known yet',
-  needing: (n: number) =>
-    n === 0 ? 'none needs anyone' : n === 1 ? '1 needs someone' : `${n} need someone`,
+  needing: (n: number) => (n === 1 ? '1 needs attention' : `${n} need attention`),
   duesMissing: (why: string) =>
     `Which compasses are due could not be found out, so that the list may not show all that your vessels need: ${why}`,
   worst: 'Largest deviation',
@@ -47,12 +46,15 @@ export const fleet = {
   show: 'Show',
   filter: {
     all: 'All vessels',
-    attention: 'Who needs someone',
+    attention: 'Need attention',
     unacknowledged: 'With unacknowledged alerts',
     large: 'Deviation above 5°',
     weak: 'With a weak or no model',
     silent: 'Silent for more than a day',
   },
+  counts: 'How many vessels',
+  columns: 'Columns',
+  csv: 'Download as CSV',
   sort: 'Sort by',
   sorted: (column: string) => `Sort by ${column}`,
   none: 'No vessel fits. Change the search or show all vessels.',
