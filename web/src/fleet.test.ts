@@ -15,7 +15,6 @@ import {
   quality,
   sortedBy,
   tagsOf,
-  toCsv,
   toSearch,
   usual,
   withNews,
@@ -179,13 +178,6 @@ describe('a view', () => {
     expect(arranged(tagged, query, now).map(({ name }) => name)).toEqual(['B']);
     expect(fromSearch(toSearch(query))).toEqual(query);
     expect(tagsOf(tagged)).toEqual(['ferry', 'tanker']);
-  });
-
-  it('is a table of a spreadsheet, in which no name is a formula', () => {
-    const [head, ...rows] = toCsv([vessel('=A"1', { tags: ['x', 'y'] })]).split('\r\n');
-    expect(head).toMatch(/^Vessel,IMO number,/);
-    expect(rows[0]).toMatch(/^"'=A""1",/);
-    expect(rows[0]).toContain('x y');
   });
 });
 

@@ -45,6 +45,12 @@ export function arranged(vessels: readonly FleetLine[], query: Query, now: Date)
     .sort((a, b) => sign * compare(a, b, query.sort) || byName(a, b));
 }
 
+/** How many vessels each filter finds. */
+export const countsOf = (vessels: readonly FleetLine[], now: Date): Record<Filter, number> =>
+  Object.fromEntries(
+    filters.map((filter) => [filter, vessels.filter((one) => passes(one, filter, now)).length]),
+  ) as Record<Filter, number>;
+
 function says(vessel: FleetVessel, words: string[]): boolean {
   const hay = plainly([vessel.name, vessel.imo_number, vessel.call_sign].join(' '));
   return words.every((word) => hay.includes(word));
@@ -147,28 +153,6 @@ export function fromSearch(text: string): Query {
 /** The tags that any of the vessels has. */
 export const tagsOf = (vessels: readonly FleetVessel[]): string[] =>
   [...new Set(vessels.flatMap(({ tags }) => tags))].sort((a, b) => a.localeCompare(b, 'en'));
-
-/** The vessels as a file for spreadsheets (RFC 4180). */
-export function toCsv(vessels: readonly FleetLine[]): string {
-  const cell = (value: string | number | null | undefined) => {
-    const text = String(value ?? '');
-    // No spreadsheet is to take a name for a formula.
-    const safe = /^[=+\-@\t\r]/.test(text) && Number.isNaN(Number(text)) ? `'${text}` : text;
-    return /[",\r\n]/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
-  };
-  const rows = vessels.map((vessel) => {
-    const ahead = worstAhead(vessel);
-    return [
-      ...[vessel.name, vessel.imo_number, vessel.call_sign, vessel.tags.join(' ')],
-      ...[vessel.alert?.summary, vessel.open_alerts],
-      ...[ahead?.worst.deviation_deg, ahead?.worst.compass_deg, vessel.model?.rms_deg],
-      ...[vessel.last_upload_at, vessel.position?.lat, vessel.position?.lon],
-      ...[vessel.due?.urgency, vessel.due?.urgency === 'unknown' ? '' : vessel.due?.on],
-      ...[vessel.inHand?.state, vessel.next_call?.port, vessel.next_call?.eta],
-    ].map(cell);
-  });
-  return [text.fleet.csvColumns.map(cell), ...rows].map((row) => row.join(',')).join('\r\n');
-}
 
 /** Another column's usual order first, and then its reverse. */
 export const sortedBy = (query: Query, sort: Sort): Query => ({

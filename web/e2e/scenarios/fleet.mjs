@@ -130,7 +130,7 @@ export const fleet = {
     allowedErrors: [notSignedIn, /status of 500 .*needs/],
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
-      await page.getByText(/ · (\d+ needs? someone|none needs anyone)/).waitFor();
+      await page.getByText(/ · \d+ needs? attention/).waitFor();
       const { id } = await withModel(page);
       const problem = { type: 'https://binnacle.example/problems/internal', status: 500 };
       await page.route(/\/needs\b/, (route) =>

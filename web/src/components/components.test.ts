@@ -1,5 +1,6 @@
 import { render } from 'svelte/server';
 import { describe, expect, test } from 'vitest';
+import { sorts } from '../fleet';
 import type { AgentStream, Change, SailNext, FleetVessel, Timeline } from '../api/types';
 import AgentPanel from './AgentPanel.svelte';
 import SailNextPanel from './SailNextPanel.svelte';
@@ -183,7 +184,7 @@ test('the list shows side, heading and band, and what is not there yet', () => {
       summary: 'The deviation exceeds 5°.',
     },
   };
-  const row = { vessel, chosen: false, choose: () => undefined, duesKnown: true };
+  const row = { vessel, chosen: false, choose: () => undefined, duesKnown: true, columns: sorts };
   const shown = words(render(FleetRow, { props: row }));
   expect(shown).toContain('MV Arcturus EAVN Critical Deviation over the limit and 2 more');
   expect(shown).toContain('6.2° W large on 045°, ± 0.4° (95 %)');

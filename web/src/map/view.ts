@@ -71,7 +71,12 @@ export function revealing(view: View, place: Place, aspect: Aspect): View {
   const point = pointOf(place);
   const [dx, dy] = [wrapped(point.x - view.x), point.y - view.y];
   const inside = Math.abs(dx) < 0.42 * view.width && Math.abs(dy) < 0.42 * view.width * aspect;
-  return inside ? view : bounded({ ...view, x: point.x, y: point.y }, aspect);
+  return inside ? view : centred(view, place, aspect);
+}
+
+/** The same nearness, with a place in the middle. */
+export function centred(view: View, place: Place, aspect: Aspect): View {
+  return bounded({ ...view, ...pointOf(place) }, aspect);
 }
 
 /** No wider than a view may be that shows nothing beyond the chart. */
