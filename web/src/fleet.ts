@@ -7,7 +7,6 @@ import type { FleetVessel } from './api/types';
 import { pressing, reasonsOf, worstAhead, type FleetLine } from './attention';
 import { plainly } from './plainly';
 import { grade } from './science/curve';
-import * as text from './text';
 
 export const filters = ['all', 'attention', 'unacknowledged', 'large', 'weak', 'silent'] as const;
 export type Filter = (typeof filters)[number];

@@ -104,6 +104,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/alerts/acknowledge": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Acknowledge several alerts
+         * @description Those that are acknowledged or cleared already stay as they are. All of them or none.
+         */
+        post: operations["acknowledge_alerts"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/alerts/{id}": {
         parameters: {
             query?: never;
@@ -141,6 +161,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/alerts/{id}/assignee": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Assign an alert
+         * @description To a user of your operator, who sees it among their own; or to nobody.
+         */
+        put: operations["assign_alert"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/alerts/{id}/clear": {
         parameters: {
             query?: never;
@@ -156,6 +196,44 @@ export interface paths {
          *     nothing.
          */
         post: operations["clear_alert"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/alerts/{id}/comments": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List the comments on an alert */
+        get: operations["list_comments"];
+        put?: never;
+        /** Comment on an alert */
+        post: operations["comment_alert"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/alerts/{id}/snooze": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Postpone an alert
+         * @description Until then it is marked as postponed. It comes back when it gets worse.
+         */
+        put: operations["snooze_alert"];
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -325,6 +403,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/card-checks/{code}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Check a printed deviation card
+         * @description By the code on it, without signing in. A code that this server did not sign is `not-found`.
+         */
+        get: operations["check_card"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/events": {
         parameters: {
             query?: never;
@@ -379,7 +477,8 @@ export interface paths {
         put?: never;
         /**
          * Create a firm
-         * @description For platform admins. Its first users are created by `binnacle-server admin create adjuster`.
+         * @description For platform admins, and for an operator's admin: then the firm works for that operator alone,
+         *     until a platform admin engages it for another.
          */
         post: operations["create_firm"];
         delete?: never;
@@ -493,6 +592,48 @@ export interface paths {
          * @description The schedule no longer plans with the firm. It keeps its orders.
          */
         delete: operations["end_terms"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/firms/{id}/users": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Invite an adjuster of a firm
+         * @description For platform admins, and for an admin of the operator that entered the firm while it works for
+         *     no other. In a session, not with a token.
+         */
+        post: operations["invite_adjuster"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/first-run": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Tell whether the server is empty */
+        get: operations["find_first_run"];
+        put?: never;
+        /**
+         * Make the first operator and its admin
+         * @description On a server without any user, with the one-time code that its administrator has printed.
+         */
+        post: operations["begin"];
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -670,6 +811,27 @@ export interface paths {
         /** Show the signed-in user */
         get: operations["me"];
         put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/me/fleet-views": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List your saved views of the fleet */
+        get: operations["list_views"];
+        /**
+         * Save your views of the fleet
+         * @description In place of those that were saved.
+         */
+        put: operations["put_views"];
         post?: never;
         delete?: never;
         options?: never;
@@ -889,7 +1051,7 @@ export interface paths {
         put?: never;
         /**
          * Enter an operator
-         * @description For platform admins. Its first people are made by `binnacle-server admin create user`.
+         * @description For platform admins, who then invite its first admin.
          */
         post: operations["create_operator"];
         delete?: never;
@@ -953,10 +1115,51 @@ export interface paths {
         get?: never;
         /**
          * Set an operator's quota
-         * @description What is there beyond a lower limit stays.
+         * @description Things beyond a lower limit stay.
          */
         put: operations["change_quota"];
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/operators/{id}/users": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Invite an operator's first admin
+         * @description For platform admins in a session. The admin invites the operator's other users.
+         */
+        post: operations["invite_admin"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/password-resets": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Ask for a code to set a new password
+         * @description For anyone who forgot the password: the server mails a code, valid for an hour. The response is
+         *     the same whether or not the address has an account. Whoever signs in by a provider gets none.
+         */
+        post: operations["request_password_reset"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1055,8 +1258,8 @@ export interface paths {
         };
         /**
          * Show your quotas
-         * @description What your company has of each thing that is limited, and how much it may have. Something beyond the
-         *     limit is refused with the type `quota-exceeded`.
+         * @description The response has how much your company has of each limited thing, and how much it may have.
+         *     Something beyond the limit is refused with the type `quota-exceeded`.
          */
         get: operations["list_quotas"];
         put?: never;
@@ -1609,8 +1812,8 @@ export interface paths {
         put?: never;
         /**
          * Invite a user
-         * @description Pass the link or the code on to the user, who sets a password with it. It works once, for a
-         *     week.
+         * @description The server mails the link where mail is set up. Otherwise pass the link or the code on to the
+         *     user, who sets a password with it. It works once, for a week.
          */
         post: operations["invite_user"];
         delete?: never;
@@ -1699,6 +1902,28 @@ export interface paths {
          * @description It comes with one compass, its standard compass.
          */
         post: operations["create_vessel"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Enter vessels by a CSV file
+         * @description The first line names the columns: `name`, and optionally `imo_number`, `call_sign`, `flag` and
+         *     `sister_class`, separated by commas or semicolons. Each vessel comes with its standard compass.
+         *     The file is stored whole or not at all. At most 2,000 vessels.
+         */
+        post: operations["upload_vessels"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2474,6 +2699,26 @@ export interface paths {
         get: operations["find_settings"];
         /** Change a vessel's settings */
         put: operations["change_settings"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/tags": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Set a vessel's tags
+         * @description In place of those that it had. The fleet's overview shows them.
+         */
+        put: operations["put_tags"];
         post?: never;
         delete?: never;
         options?: never;
@@ -3698,12 +3943,37 @@ export interface components {
              */
             name: string;
         };
+        /**
+         * @description Result of an acknowledgement of several alerts.
+         * @example {
+         *       "acknowledged": 12
+         *     }
+         */
+        Acknowledged: {
+            /** @description Number of alerts that were raised until then. */
+            acknowledged: number;
+        };
         /** @description Acknowledgement of an alert. */
         Acknowledgement: {
             /**
              * @description A note in the person's own words.
              * @example Master informed; azimuth taken
              */
+            note?: string | null;
+        };
+        /**
+         * @description Acknowledgement of several alerts.
+         * @example {
+         *       "alerts": [
+         *         "0199aa00-0000-7000-8000-000000000001"
+         *       ],
+         *       "note": "Masters informed"
+         *     }
+         */
+        Acknowledgements: {
+            /** @description The alerts, 1 to 200. */
+            alerts: components["schemas"]["AlertId"][];
+            /** @description A note in the person's own words. */
             note?: string | null;
         };
         /**
@@ -3741,6 +4011,7 @@ export interface components {
              *     ]
              */
             not_known: string[];
+            order: components["schemas"]["NeedOrder"] | null;
             /**
              * @description Greatest deviation predicted for each place and day to come, where the model's band is
              *     narrow enough.
@@ -3899,6 +4170,9 @@ export interface components {
             acknowledgement_note: string | null;
             /** @description Advice to the crew and the office. */
             advice: string;
+            /** @description Name of that user. */
+            assigned_name: string | null;
+            assigned_to: components["schemas"]["UserId"] | null;
             /** @description Its cause. */
             cause: components["schemas"]["AlertCause"];
             cleared_at: components["schemas"]["Time"] | null;
@@ -3923,6 +4197,7 @@ export interface components {
             severity: components["schemas"]["Severity"];
             /** @description Beginning of its cause, as far as that is known. */
             since: components["schemas"]["Time"];
+            snoozed_until: components["schemas"]["Time"] | null;
             /** @description Its state. */
             state: components["schemas"]["AlertState"];
             /**
@@ -3945,6 +4220,25 @@ export interface components {
          * @enum {string}
          */
         AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "alignment" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "gnss_interference" | "unknown_change" | "adjustment_not_confirmed" | "agreed_job_at_risk" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
+        /** @description Comment on an alert. */
+        AlertComment: {
+            /** @description Time of the comment. */
+            at: components["schemas"]["Time"];
+            /** @description Name of its author. */
+            by: string;
+            /**
+             * Format: uuid
+             * @description Its id.
+             */
+            id: string;
+            /** @description The comment. */
+            text: string;
+        };
+        /** @description Comments on an alert. */
+        AlertCommentList: {
+            /** @description The earliest first. */
+            items: components["schemas"]["AlertComment"][];
+        };
         /**
          * Format: uuid
          * @description Id of an alert.
@@ -4018,6 +4312,10 @@ export interface components {
          * @enum {string}
          */
         AsFoundDifference: "record_wrong" | "moved_since";
+        /** @description Assignment of an alert. */
+        Assignment: {
+            user_id: components["schemas"]["UserId"] | null;
+        };
         /** @description Action that was done or tried. */
         AuditLine: {
             /** @description E-mail address that was tried, of a refused sign-in. */
@@ -4724,6 +5022,50 @@ export interface components {
             /** @description The work order. */
             order: components["schemas"]["OrderId"];
         };
+        /** @description Check of a printed deviation card. */
+        CardCheck: {
+            /** @description Time that the card is for. */
+            at: components["schemas"]["Time"];
+            /** @description Time of this check. */
+            checked_at: components["schemas"]["Time"];
+            /**
+             * @description The compass, with make and serial number where they are recorded.
+             * @example Standard compass, Cassens & Plath, no. 2047
+             */
+            compass: string;
+            /**
+             * @description Her IMO number.
+             * @example 9074729
+             */
+            imo_number: string | null;
+            /**
+             * Format: double
+             * @description Greatest difference between the card and the compass's latest model, at the card's place,
+             *     degrees; none without a model.
+             * @example 0.2
+             */
+            largest_difference_deg: number | null;
+            /**
+             * Format: int64
+             * @description Version of the model behind the card.
+             * @example 12
+             */
+            model_version: number;
+            /** @description Lines of the card by compass heading from 0, each 15°. */
+            rows: components["schemas"]["CheckedRow"][];
+            /** @description State of the card. */
+            state: components["schemas"]["CardState"];
+            /**
+             * @description The state in words, with its reason.
+             * @example This card is in force.
+             */
+            statement: string;
+            /**
+             * @description Name of the ship.
+             * @example Nao Victoria
+             */
+            vessel_name: string;
+        };
         /** @description Coefficients at a card's place, degrees. */
         CardCoefficients: {
             /**
@@ -4899,6 +5241,11 @@ export interface components {
              */
             samples: number;
         };
+        /**
+         * @description State of a printed card.
+         * @enum {string}
+         */
+        CardState: "in_force" | "replaced" | "withdrawn" | "suspected";
         /**
          * @description CardStatus of a card.
          * @enum {string}
@@ -5178,7 +5525,7 @@ export interface components {
         ChangedQuota: {
             /**
              * Format: int64
-             * @description What there may be; `null` for the limit by default.
+             * @description Largest number allowed; `null` for the limit by default.
              */
             most: number | null;
         };
@@ -5194,6 +5541,21 @@ export interface components {
             /** @description The user's name. */
             name?: string | null;
             role?: components["schemas"]["FleetRole"] | null;
+        };
+        /** @description Line of a printed card. */
+        CheckedRow: {
+            /**
+             * Format: double
+             * @description Compass heading.
+             * @example 15
+             */
+            compass_deg: number;
+            /**
+             * Format: double
+             * @description Deviation, degrees, east positive, to a tenth.
+             * @example 2.3
+             */
+            deviation_deg: number;
         };
         /** @description Plan that was chosen. */
         ChosenPlan: {
@@ -5754,6 +6116,14 @@ export interface components {
             adjusted_by: components["schemas"]["CardAdjuster"] | null;
             /** @description Magnetic cargo on board at that date, by the logbook. */
             cargo: components["schemas"]["CargoAboard"][];
+            /** @description Code by which anyone who holds the card can check it: `GET /card-checks/{code}`. */
+            check_code: string;
+            /**
+             * @description Address of the page that does so, which the sheet has as a QR code; none where the server's
+             *     public address is not configured.
+             * @example https://binnacle.example.com/check/AXk…
+             */
+            check_url: string | null;
             /** @description The coefficients there. */
             coefficients: components["schemas"]["CardCoefficients"];
             /** @description The compass: each magnetic element has a card of its own. */
@@ -6050,6 +6420,11 @@ export interface components {
             /** @description Its id. */
             id: components["schemas"]["FirmId"];
             /**
+             * @description True if your operator has entered the firm and it works for no other: then your admins
+             *     invite its users.
+             */
+            is_own: boolean;
+            /**
              * @description Its name.
              * @example Nervión Compass
              */
@@ -6285,6 +6660,19 @@ export interface components {
             teams: components["schemas"]["FirmTeam"][];
             terms: components["schemas"]["FirmTerms"] | null;
         };
+        /** @description Admin who can now sign in. */
+        FirstAdmin: {
+            /**
+             * @description E-mail address to sign in with.
+             * @example ada@example.com
+             */
+            email: string;
+        };
+        /** @description State of a server's first run. */
+        FirstRun: {
+            /** @description True while the server has no user: its first operator can be made. */
+            open: boolean;
+        };
         /** @description An operator's vessels. */
         Fleet: {
             /** @description `after` of the next page. */
@@ -6437,12 +6825,32 @@ export interface components {
              */
             open_alerts: number;
             position: components["schemas"]["LastPosition"] | null;
+            /** @description Its tags, in alphabetical order. */
+            tags: string[];
             /**
              * @description Its places in the month before, degrees north and east, one for each twelve hours, the
              *     oldest first. Empty with a `limit` above 200, as a map of so many would be unreadable.
              */
             track: number[][];
             worst: components["schemas"]["WorstHeading"] | null;
+        };
+        /**
+         * @description A saved view.
+         * @example {
+         *       "name": "Tankers",
+         *       "search": "?tag=tanker"
+         *     }
+         */
+        FleetView: {
+            /** @description Its name. */
+            name: string;
+            /** @description Search, filter and order, as in the address of the dashboard's fleet page. */
+            search: string;
+        };
+        /** @description A user's saved views. */
+        FleetViewList: {
+            /** @description In the order of their names; 50 at most. */
+            items: components["schemas"]["FleetView"][];
         };
         /** @description The holder of the Flinders bar; its top pole is at the card's height. */
         FlindersHolder: {
@@ -6470,6 +6878,16 @@ export interface components {
              * @description Relative standard deviation of the effect about the formula's.
              */
             tolerance: number;
+        };
+        /**
+         * @description Address of a user who forgot the password.
+         * @example {
+         *       "email": "ada@example.com"
+         *     }
+         */
+        Forgotten: {
+            /** @description E-mail address used to sign in. */
+            email: string;
         };
         /**
          * @description Share of the prior variance of each parameter and the constant that the data removed: 0
@@ -6696,7 +7114,8 @@ export interface components {
          * @example {
          *       "code": "7QWM-0V3N-KX2D-9RTA",
          *       "expires_at": "2026-11-28T07:00:00Z",
-         *       "link": "https://binnacle.example.com/invitation#7QWM-0V3N-KX2D-9RTA"
+         *       "link": "https://binnacle.example.com/invitation#7QWM-0V3N-KX2D-9RTA",
+         *       "mailed": true
          *     }
          */
         Invitation: {
@@ -6709,6 +7128,11 @@ export interface components {
              *     after the # is sent to no server and appears in no log.
              */
             link: string | null;
+            /**
+             * @description True if the server has mailed the link to the user. It has not where mail is not set up, or
+             *     the relay refused the letter.
+             */
+            mailed: boolean;
         };
         /** @description Invited user, with the invitation. */
         InvitedUser: {
@@ -6927,7 +7351,7 @@ export interface components {
             port?: string | null;
             to?: components["schemas"]["Time"] | null;
         };
-        /** @description What a token made and goes on without it. */
+        /** @description Thing that a token made and that goes on without it. */
         MadeByToken: {
             /**
              * Format: uuid
@@ -7306,6 +7730,22 @@ export interface components {
          * @enum {string}
          */
         NeedCauseKind: "never_adjusted" | "interval" | "event" | "over_limit" | "transit" | "change" | "failed_verification";
+        /** @description Open work order of a compass. */
+        NeedOrder: {
+            /** @description Beginning of the work as agreed or proposed. */
+            from: components["schemas"]["Time"];
+            /** @description The order. */
+            id: components["schemas"]["OrderId"];
+            /**
+             * @description Port, as the operator wrote it or as its UN/LOCODE.
+             * @example NLRTM
+             */
+            port: string;
+            /** @description State of the order. */
+            state: components["schemas"]["WorkOrderState"];
+            /** @description End of the work. */
+            until: components["schemas"]["Time"];
+        };
         /** @description Compass whose order is under way beside the plan. */
         NeedUnderWay: components["schemas"]["PlannedCompass"] & {
             /** @description The order. */
@@ -7363,6 +7803,16 @@ export interface components {
             token: string;
         };
         /**
+         * @description Comment to be written.
+         * @example {
+         *       "text": "The master takes an azimuth tonight."
+         *     }
+         */
+        NewAlertComment: {
+            /** @description The comment. */
+            text: string;
+        };
+        /**
          * @description An azimuth to be entered.
          * @example {
          *       "compass_bearing_deg": 150,
@@ -7407,6 +7857,19 @@ export interface components {
          */
         NewCompany: {
             /** @description Its name. */
+            name: string;
+        };
+        /**
+         * @description User of a company to be invited by who manages the company.
+         * @example {
+         *       "email": "rosa@example.com",
+         *       "name": "Rosa Sáez"
+         *     }
+         */
+        NewCompanyUser: {
+            /** @description E-mail address to sign in with. */
+            email: string;
+            /** @description The user's name. */
             name: string;
         };
         /**
@@ -7459,6 +7922,31 @@ export interface components {
             proof: string;
             /** @description Ed25519 (RFC 8032), 64 hexadecimal digits. */
             public_key: string;
+        };
+        /**
+         * @description First operator of a server, and its first admin.
+         * @example {
+         *       "code": "7QWM-0V3N-KX2D-9RTA",
+         *       "email": "ada@example.com",
+         *       "name": "Ada Lovelace",
+         *       "operator_name": "Armada del Sur",
+         *       "password": "seven gulls over the quay"
+         *     }
+         */
+        NewFirstOperator: {
+            /** @description Code that `binnacle-server admin first-run` has printed; case and hyphens do not matter. */
+            code: string;
+            /** @description E-mail address that the admin signs in with. */
+            email: string;
+            /** @description Name of the admin. */
+            name: string;
+            /** @description Name of the operator. */
+            operator_name: string;
+            /**
+             * Format: password
+             * @description Password: at least 12 characters, neither common nor easily guessed.
+             */
+            password: string;
         };
         /** @description Mail recipient to be added. */
         NewMailRecipient: {
@@ -9002,7 +9490,7 @@ export interface components {
         QuotaUse: {
             /**
              * Format: int64
-             * @description What there may be.
+             * @description Largest number allowed.
              */
             most: number;
             /**
@@ -9012,7 +9500,7 @@ export interface components {
             name: string;
             /**
              * Format: int64
-             * @description What there is.
+             * @description Number of those that exist.
              */
             used: number;
         };
@@ -10323,6 +10811,15 @@ export interface components {
             /** @description The oldest first. */
             items: components["schemas"]["PublishedKey"][];
         };
+        /**
+         * @description Postponement of an alert.
+         * @example {
+         *       "until": "2026-12-01T08:00:00Z"
+         *     }
+         */
+        Snooze: {
+            until: components["schemas"]["Time"] | null;
+        };
         /** @description A step of permanent magnetism over λ, nT, with its standard errors. */
         Step: {
             /**
@@ -10565,7 +11062,7 @@ export interface components {
          * @description Urgency of a need.
          * @enum {string}
          */
-        Urgency: "routine" | "soon" | "urgent" | "overdue";
+        Urgency: "routine" | "unknown" | "soon" | "urgent" | "overdue";
         /** @description User of the operator. */
         User: {
             /** @description Creation time of the user. */
@@ -10752,6 +11249,29 @@ export interface components {
             alerts?: components["schemas"]["AlertLimits"];
             /** @description Settings of the analysis of its samples. */
             analysis: components["schemas"]["ReadingSettings"];
+        };
+        /**
+         * @description Tags of a vessel.
+         * @example {
+         *       "tags": [
+         *         "Atlantic",
+         *         "tanker"
+         *       ]
+         *     }
+         */
+        VesselTags: {
+            /** @description In alphabetical order: 20 at most, of 40 characters at most. */
+            tags: string[];
+        };
+        /**
+         * @description Result of an upload of vessels.
+         * @example {
+         *       "created": 12
+         *     }
+         */
+        VesselUpload: {
+            /** @description Number of new vessels. */
+            created: number;
         };
         /** @description Webhook, without its secret. */
         Webhook: {
@@ -11743,6 +12263,129 @@ export interface operations {
             };
         };
     };
+    acknowledge_alerts: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Acknowledgements"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Acknowledged"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     find_alert: {
         parameters: {
             query?: never;
@@ -11953,6 +12596,131 @@ export interface operations {
             };
         };
     };
+    assign_alert: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["AlertId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Assignment"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Alert"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     clear_alert: {
         parameters: {
             query?: never;
@@ -11965,6 +12733,335 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["Clearing"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Alert"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_comments: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["AlertId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AlertCommentList"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    comment_alert: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Key of the request; the same request with the same key creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["AlertId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewAlertComment"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AlertCommentList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    snooze_alert: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["AlertId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Snooze"];
             };
         };
         responses: {
@@ -12850,6 +13947,74 @@ export interface operations {
             };
             /** @description Forbidden */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    check_card: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The code on the card */
+                code: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CardCheck"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -14011,6 +15176,283 @@ export interface operations {
             };
         };
     };
+    invite_adjuster: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["FirmId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewCompanyUser"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Invitation"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The e-mail address already has an account */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_first_run: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FirstRun"];
+                };
+            };
+        };
+    };
+    begin: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewFirstOperator"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FirstAdmin"];
+                };
+            };
+            /** @description There is no such code */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The server has users */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The code has expired */
+            410: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     find_fleet: {
         parameters: {
             query?: {
@@ -15102,6 +16544,185 @@ export interface operations {
             };
             /** @description Service Unavailable */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_views: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FleetViewList"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    put_views: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["FleetViewList"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FleetViewList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -16840,6 +18461,171 @@ export interface operations {
             };
             /** @description Insufficient Storage */
             507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    invite_admin: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OperatorId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewCompanyUser"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Invitation"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The e-mail address already has an account */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    request_password_reset: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Forgotten"];
+            };
+        };
+        responses: {
+            /** @description A letter is sent if the address has an account */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Mail is not set up on this server */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -20956,6 +22742,124 @@ export interface operations {
                 };
             };
             /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    upload_vessels: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                /**
+                 * @example name,imo_number,call_sign,flag
+                 *     Nao Victoria,9074729,EAVN,ES
+                 */
+                "text/csv": string;
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VesselUpload"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The file has errors; the detail names the first fifty with line and column */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -26538,6 +28442,131 @@ export interface operations {
             };
             /** @description Precondition Failed */
             412: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    put_tags: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["VesselTags"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VesselTags"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };

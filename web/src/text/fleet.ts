@@ -75,7 +75,6 @@ export const fleet = {
   removeView: (name: string) => `Remove the view “${name}”`,
   remove: 'Remove',
   viewsKept: 'Views are saved with your account.',
-  csv: 'CSV',
   tag: 'Tag',
   anyTag: 'Any tag',
   tagging: 'Tag…',
