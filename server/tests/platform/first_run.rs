@@ -180,7 +180,9 @@ async fn a_forgotten_password_is_set_with_a_mailed_code_and_an_invitation_is_mai
 /// Returns the code in the letter to an address.
 fn mailed_code(relay: &Relay, address: &str) -> String {
     let letters = relay.letters();
-    let mut to = letters.iter().filter(|letter| letter.to == [address]);
+    let mut to = letters
+        .iter()
+        .filter(|letter| letter.to.iter().any(|to| to.contains(address)));
     let text = &to.next().unwrap().text;
     let (_, code) = text
         .split_once("https://binnacle.example/invitation#")

@@ -109,7 +109,8 @@ async fn needs_are_paged_by_due_date(server: TestServer) {
         };
         after = format!("&after={next}");
     }
-    assert_eq!(found, ["Pinta", "Nao", "Santa"]);
+    // Of Pinta no adjustment is on record.
+    assert_eq!(found, ["Nao", "Santa", "Pinta"]);
     let soon = ada
         .get("/needs?urgency=soon&due_by=2026-12-20")
         .await
