@@ -128,7 +128,7 @@ enum Next {
     /// The plan's next step.
     Step,
     /// Another plan.
-    Plan(Outcome),
+    Plan(Box<Outcome>),
     /// End.
     Ended(&'static str),
 }
@@ -211,7 +211,7 @@ impl Hands {
             match next {
                 Next::Step => {}
                 Next::Plan(anew) if anew.plans.is_empty() => return "refused",
-                Next::Plan(anew) => (outcome, at) = (anew, 0),
+                Next::Plan(anew) => (outcome, at) = (*anew, 0),
                 Next::Ended(ended) => return ended,
             }
         }
@@ -258,12 +258,12 @@ impl Hands {
                 setting, outcome, ..
             } => (setting, None, outcome),
             StepCheck::FoundOtherwise {
-                binnacle,
                 setting,
+                binnacle,
                 outcome,
                 ..
-            } => (setting, Some(binnacle), outcome),
-            StepCheck::OtherStrength {
+            }
+            | StepCheck::OtherStrength {
                 setting,
                 binnacle,
                 outcome,
@@ -280,7 +280,7 @@ impl Hands {
             work.binnacle = *binnacle;
         }
         work.slips_at = None;
-        Next::Plan(*anew)
+        Next::Plan(anew)
     }
 
     fn check_second_reading(&mut self, scene: &mut Scene, work: &mut Work) -> Next {
@@ -311,7 +311,7 @@ impl Hands {
                 work.learnt = Some((updated.model_after, reading, down_nt));
                 work.binnacle = *binnacle;
                 work.done.clear();
-                ("beyond limits", Next::Plan(*outcome))
+                ("beyond limits", Next::Plan(outcome))
             }
             Verdict::Slip { step, .. } => {
                 let suspected = work.done[step as usize - 1].step.to.clone();

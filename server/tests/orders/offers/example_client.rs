@@ -170,7 +170,7 @@ async fn the_example_client_completes_an_order(server: TestServer) {
         "the server signed it: rosa had registered it as \"Office\"",
         "the server signed it: no firm had registered it",
         // The list of the firms that get the offer.
-        "entries 2 are withheld: their content cannot be checked",
+        "entries 3 are withheld: their content cannot be checked",
     ] {
         assert!(facts.contains(fact), "{fact}: {facts}");
     }

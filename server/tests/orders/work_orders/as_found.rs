@@ -12,9 +12,11 @@ on_both!(
     a_half_done_order_that_is_cancelled_lets_the_ship_be_planned_again,
 );
 
-/// Creates another order without a report.
+/// Creates an order without a report, in place of the one that has it.
 async fn unconfirmed(server: &TestServer) -> Job {
     let mut job = Job::begin(server).await;
+    let text = json!({ "text": "ordered anew" });
+    job.post("/cancel", &text).await.good();
     let made = job.person.post("/work-orders", &job.new_order()).await;
     made.good()["id"]
         .as_str()

@@ -89,7 +89,9 @@ async fn a_request_delayed_for_days_is_written_once(server: TestServer) {
     let kinds: Vec<&Value> = lines.map(|line| &line["entry"]["kind"]).collect();
     assert_eq!(
         kinds,
-        ["opened", "remark", "photo", "remark", "remark", "remark"]
+        [
+            "opened", "as_found", "remark", "photo", "remark", "remark", "remark"
+        ]
     );
     server.finish().await;
 }
@@ -138,7 +140,7 @@ async fn a_bad_reading_is_logged_and_refused_with_likely_causes(server: TestServ
             (&order["state"], &order["reading"]),
             (&json!("planned"), &Value::Null)
         );
-        assert_eq!(order["last_seq"], 2 + entries, "it is kept");
+        assert_eq!(order["last_seq"], 3 + entries, "it is kept");
     }
     for (body, named) in [
         (with(json!({ "unit": "furlong" })), "unit"),
@@ -156,7 +158,7 @@ async fn a_bad_reading_is_logged_and_refused_with_likely_causes(server: TestServ
     }
     assert_eq!(
         job.view_order().await["last_seq"],
-        4,
+        5,
         "what cannot be read is not kept"
     );
     server.finish().await;
@@ -271,7 +273,7 @@ async fn a_request_invalid_in_a_state_is_refused_and_writes_nothing(server: Test
     refused(job.person.get(&job.path("/evidence.zip")).await);
     let key = json!({ "public_key": "00".repeat(32), "signature": "00".repeat(64) });
     refused(job.post("/signatures", &key).await);
-    assert_eq!(job.view_order().await["last_seq"], 1);
+    assert_eq!(job.view_order().await["last_seq"], 2);
     job.post("/berth-reading", &reading()).await.good();
     job.post("/plan", &json!({})).await.good();
     refused(job.post("/steps/99", &json!({ "after_deg": 1.0 })).await);
@@ -289,7 +291,7 @@ async fn a_request_invalid_in_a_state_is_refused_and_writes_nothing(server: Test
     );
     let none = job.post("/plan", &json!({ "plan": 99 })).await;
     assert_eq!(none.problem(), "invalid");
-    assert_eq!(job.view_order().await["last_seq"], 3);
+    assert_eq!(job.view_order().await["last_seq"], 4);
     let cancelled = job
         .post("/cancel", &json!({ "text": "she sails" }))
         .await
@@ -356,7 +358,7 @@ async fn a_viewer_can_read_but_not_change_an_order(server: TestServer) {
     }
     let made = bob.post("/work-orders", &job.new_order()).await;
     assert_eq!(made.problem(), "forbidden");
-    assert_eq!(job.view_order().await["last_seq"], 1);
+    assert_eq!(job.view_order().await["last_seq"], 2);
     server.finish().await;
 }
 

@@ -150,6 +150,7 @@ async fn an_unverified_prediction_does_not_count_as_recent(server: TestServer) {
         .await
         .good();
     made["id"].as_str().unwrap().clone_into(&mut job.order);
+    job.confirm_as_found().await;
     let mut repeated = reading();
     let there = second_reading(&done["setting"]);
     for part in ["forward", "starboard"] {

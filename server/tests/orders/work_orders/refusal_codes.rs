@@ -115,6 +115,7 @@ async fn a_lambda_contradicting_the_last_adjustment_needs_a_logbook_entry(server
         .as_str()
         .unwrap()
         .clone_into(&mut job.order);
+    job.confirm_as_found().await;
     let read = |times: f64| {
         let mut body = reading();
         let repeated = second_reading(&setting);
@@ -175,7 +176,7 @@ async fn a_step_is_done_by_one_of_two_browsers(server: TestServer) {
     let mut statuses = [one.status, other.status];
     statuses.sort_unstable();
     assert_eq!(statuses, [200, 409], "{one:?} {other:?}");
-    assert_eq!(job.view_order().await["last_seq"], 4, "it is done once");
+    assert_eq!(job.view_order().await["last_seq"], 5, "it is done once");
     server.finish().await;
 }
 

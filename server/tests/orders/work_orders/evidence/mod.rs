@@ -104,7 +104,7 @@ async fn only_an_image_is_accepted_as_a_photograph(server: TestServer) {
     job.post_photo(PICTURE).await.good();
     let order = job.view_order().await;
     assert_eq!(order["photos"].as_array().unwrap().len(), 1);
-    let log = job.person.get(&job.path("/entries?after=1")).await.good();
+    let log = job.person.get(&job.path("/entries?after=2")).await.good();
     let taken = &log["items"][0]["entry"]["content"];
     assert_eq!(
         (&taken["media_type"], &taken["caption"]),
@@ -175,7 +175,7 @@ async fn tampered_evidence_is_detected(server: TestServer) {
         "{found:?}"
     );
     assert!(found.facts.iter().any(|fact| {
-        fact.contains("cover record.json, predicted.csv, record.pdf, photos/0002.jpeg")
+        fact.contains("cover record.json, predicted.csv, record.pdf, photos/0003.jpeg")
     }));
     let files = unpack(&whole);
     assert!(String::from_utf8_lossy(&files["README.txt"]).contains("not a certificate"));
