@@ -114,7 +114,7 @@ pub enum Caution {
     /// Z are known, so elsewhere the prior dominates.
     #[error(
         "all samples are from one magnetic latitude, where permanent and induced magnetism \
-         cannot be told apart: far from there the band rests on experience with other ships"
+         cannot be separated: far from there the band rests on experience with other ships"
     )]
     OneMagneticLatitude,
     /// The range of magnetic latitudes is wide enough to separate bx from χ13 Z and by from
