@@ -123,8 +123,8 @@ describe('a change', () => {
 
   test('has each figure of its size by its name', () => {
     expect(sizes(timeline, struck)).toEqual([
-      { what: 'Deviation on the worst heading, where she was then', size: 'changed by 6.2°' },
-      { what: 'Deviation on 090°, the worst where she was last', size: 'changed by 6.0° W' },
+      { what: 'Largest change of deviation, where the vessel was then', size: 'changed by 6.2°' },
+      { what: 'Deviation on 090°, the worst at the last position', size: 'changed by 6.0° W' },
       {
         what: 'Permanent field fore-and-aft, forward positive',
         size: 'changed by +3.0 ± 0.1\u00a0µT',

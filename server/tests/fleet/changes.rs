@@ -175,7 +175,7 @@ async fn a_strike_raises_one_alert_that_is_updated(server: TestServer) {
     assert_eq!(later.len(), 1, "{later:?}");
     assert_eq!(later[0]["id"], raised[0]["id"], "updated, not repeated");
     assert_eq!(later[0]["severity"], "warning", "{later:?}");
-    assert!(field_of(&later[0], "advice").contains("Put up a new card"));
+    assert!(field_of(&later[0], "advice").contains("Print and post a new card"));
     // A compass changed by lightning needs an adjustment.
     let needs = ada.get(&nao.path("/needs")).await.good();
     let mut causes = needs["items"][0]["causes"].as_array().unwrap().iter();

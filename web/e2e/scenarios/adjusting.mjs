@@ -120,7 +120,7 @@ export const adjusting = {
         mimeType: 'application/json',
         buffer: Buffer.from('[]'),
       });
-      await panel.getByRole('alert').getByText('This file is no binnacle').waitFor();
+      await panel.getByRole('alert').getByText('This file is not a binnacle').waitFor();
       await panel.getByLabel('Import JSON').setInputFiles({
         name: 'binnacle.json',
         mimeType: 'application/json',

@@ -315,7 +315,7 @@ export const alerts = {
       assert.match(said, /\d{1,2} [A-Z][a-z]{2} 20\d\d, \d\d:\d\d UTC/);
       assert.match(
         said,
-        /Deviation on the worst heading, where she was then\s+changed by \d+\.\d°/,
+        /Largest change of deviation, where the vessel was then\s+changed by \d+\.\d°/,
       );
       assert.match(
         said,

@@ -88,7 +88,7 @@ async function offered(page) {
 }
 
 const jobs = (page) => page.getByTestId('jobs').locator('tbody tr');
-const solve = (page) => page.getByRole('button', { name: /^(Re-solve|Make the plan)$/ });
+const solve = (page) => page.getByRole('button', { name: /^(Update plan|Make the plan)$/ });
 
 export const schedule = {
   'port calls are entered by hand and from a file, and the schedule is solved': {
@@ -177,7 +177,7 @@ export const schedule = {
       await panel.getByRole('combobox', { name: 'Firm' }).selectOption({ index: 1 });
       await panel.getByLabel(/^Why/).fill('Agreed by telephone');
       await shoot('schedule-job', {}, panel);
-      await panel.getByRole('button', { name: 'Pin and re-solve' }).click();
+      await panel.getByRole('button', { name: 'Pin and update plan' }).click();
       const changes = page.getByRole('region', { name: 'What changed' });
       await changes.getByTestId('changes').getByText('Moved').waitFor();
       await changes.getByText(/costs €.* more by your weights/).waitFor();

@@ -38,7 +38,7 @@ export const session = {
       await page.getByRole('heading', { name: 'Fleet', level: 1 }).waitFor();
       const link = page.getByRole('rowheader').getByRole('link').first();
       await link.waitFor();
-      for (let presses = 0; presses < 30; presses++) {
+      for (let presses = 0; presses < 45; presses++) {
         if (await link.evaluate((element) => element === document.activeElement)) break;
         await page.keyboard.press('Tab');
       }

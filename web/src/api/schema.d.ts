@@ -4019,7 +4019,7 @@ export interface components {
             predicted: components["schemas"]["DeviationAhead"][];
             /**
              * @description Reason of the due date, as a sentence.
-             * @example 24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G, read second-hand)
+             * @example 24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G)
              */
             reason: string;
             /** @description Urgency of the due date. */

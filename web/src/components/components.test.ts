@@ -276,7 +276,7 @@ describe('the timeline', () => {
     const said = shown({ ...calm, changes: [struck] });
     for (const part of [
       'Lightning or a shock some time between 8 Nov 2026, 23:40 UTC and 9 Nov 2026, 00:10 UTC',
-      'Deviation on the worst heading, where she was then changed by 6.2°',
+      'Largest change of deviation, where the vessel was then changed by 6.2°',
       'Permanent field fore-and-aft, forward positive changed by +3.0 ± 0.1 µT',
       'Permanent field athwartships, starboard positive changed by −2.0 ± 0.1 µT',
       'Found 2 h after that.',

@@ -36,7 +36,7 @@ export const binnacles = {
   piecesWrong: 'Pieces of the Flinders bar: lengths in mm, with commas between.',
   countWrong: 'How many there are: a whole number.',
   testedWrong: 'The tested moment has to be greater than 0.',
-  unreadable: 'This file is no binnacle as docs/binnacle.md describes it.',
+  unreadable: 'This file is not a binnacle.',
   imported: (name: string) => `From the file ${name}. Look at it, then save.`,
   setting: {
     carrier: { hole: 'Hole', tray: 'Tray at hole' },
@@ -90,7 +90,7 @@ export const fleetBinnacles = {
   revision: (n: number, who: string) => `revision ${n}, by ${who}`,
   types: 'Types that come with the product',
   typesLead:
-    'A binnacle of another type is brought in as a file, on the vessel’s page; docs/binnacle.md describes it.',
+    'Import a binnacle of another type as a file, on the Adjustment tab of the vessel’s page.',
 };
 
 export const particulars = {

@@ -29,12 +29,11 @@ export const changes = {
   between: (earliest: string, latest: string) => `some time between ${earliest} and ${latest}`,
   found: (later: string) => `Found ${later} after that.`,
   foundAtOnce: 'Found at once.',
-  deviation: (degrees: string) =>
-    `Deviation changed by up to ${degrees} on the worst heading, where she was then.`,
+  deviation: (degrees: string) => `Deviation changed by up to ${degrees} here.`,
   sizes: {
     title: 'How large it was',
-    then: 'Deviation on the worst heading, where she was then',
-    last: (heading: string) => `Deviation on ${heading}, the worst where she was last`,
+    then: 'Largest change of deviation, where the vessel was then',
+    last: (heading: string) => `Deviation on ${heading}, the worst at the last position`,
     foreAft: 'Permanent field fore-and-aft, forward positive',
     athwart: 'Permanent field athwartships, starboard positive',
     by: (size: string) => `changed by ${size}`,

@@ -4,7 +4,7 @@ import type { MessageKind, Severity } from '../api/types';
 
 export const webhooks = {
   title: 'Webhooks',
-  lead: 'Programs of yours that are told of alerts. Each message is signed; how to verify it stands in docs/webhooks.md.',
+  lead: 'Programs of yours that are told of alerts. Each message is signed; the help has how to verify that.',
   none: 'No program is told of alerts yet.',
   noneViewer: 'An administrator of your company makes webhooks.',
   add: 'Add a webhook',

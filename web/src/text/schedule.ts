@@ -11,9 +11,9 @@ export const schedule = {
   empty:
     'A plan needs port calls, and firms with terms. Enter port calls below, say the firms’ terms, and make the plan.',
   emptyViewer: 'An administrator of your company enters port calls and firms’ terms.',
-  solve: 'Re-solve',
+  solve: 'Update plan',
   first: 'Make the plan',
-  solving: 'Solving…',
+  solving: 'Updating…',
   outdated: (since: string) =>
     `Something changed at ${since} that this plan does not know of. Another one follows by itself within a minute.`,
   problem: (why: string) => `The last try to make a plan failed: ${why}`,
@@ -160,7 +160,7 @@ export const schedule = {
     hourWrong: 'That hour is not in the call on that day.',
     firm: 'Firm',
     note: 'Why',
-    submit: 'Pin and re-solve',
+    submit: 'Pin and update plan',
     busy: 'Pinning…',
     unpin: 'Let it go where it is best',
     pinnedBy: (who: string, when: string) => `Pinned by ${who}, ${when}.`,

@@ -113,15 +113,15 @@ pub enum Caution {
     /// The range of magnetic latitudes is too narrow: only the sums bx + χ13 Z and by + χ23
     /// Z are known, so elsewhere the prior dominates.
     #[error(
-        "the magnetic latitudes of the samples determine only the sums bx + chi13 Z and \
-         by + chi23 Z: far from there the band rests on experience with other ships"
+        "all samples are from one magnetic latitude, where permanent and induced magnetism \
+         cannot be separated: far from there the band rests on experience with other ships"
     )]
     OneMagneticLatitude,
     /// The range of magnetic latitudes is wide enough to separate bx from χ13 Z and by from
     /// χ23 Z, but the samples are too few.
     #[error(
-        "too few samples to separate bx from chi13 Z and by from chi23 Z: in other waters the \
-         band rests on experience with other ships"
+        "too few samples to tell permanent from induced magnetism: in other waters the band \
+         rests on experience with other ships"
     )]
     FewSamples,
     /// The rows have no times, so samples with a common gyro error are not known.

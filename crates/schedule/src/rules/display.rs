@@ -1,6 +1,6 @@
 //! Rules as text.
 
-use super::{Citation, EventKind, Provenance};
+use super::{Citation, EventKind};
 use std::fmt;
 
 impl fmt::Display for Citation {
@@ -9,10 +9,7 @@ impl fmt::Display for Citation {
         if let Some(section) = &self.section {
             write!(f, ", {section}")?;
         }
-        match self.read {
-            Provenance::FirstHand => Ok(()),
-            Provenance::SecondHand => f.write_str(", read second-hand"),
-        }
+        Ok(())
     }
 }
 

@@ -27,10 +27,7 @@ pub struct Need {
     /// Urgency of the due date.
     pub urgency: Urgency,
     /// Reason of the due date, as a sentence.
-    #[schema(
-        example = "24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G, \
-                        read second-hand)"
-    )]
+    #[schema(example = "24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G)")]
     pub reason: String,
     /// All causes, the earliest first.
     pub causes: Vec<Cause>,

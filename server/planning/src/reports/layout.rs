@@ -325,8 +325,8 @@ mod tests {
 
     #[test]
     fn a_long_reason_is_printed_whole() {
-        let reason = "24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G, \
-                      read second-hand), brought forward by welding near the compass";
+        let reason = "24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G), \
+                      brought forward by welding near the compass";
         let plain = |text: &str| (text.to_owned(), Style::plain(SIZE));
         let cells = ["Nao", "Standard compass", "2026-12-20", reason, "none"].map(plain);
         let mut paper = Paper::new();

@@ -284,8 +284,8 @@ pub(super) fn advice(case: Case) -> &'static str {
              deviation stays large."
         }
         _ => {
-            "Put up a new card: the one from before does not hold. The corrected heading takes \
-             the change into account. Check it by an azimuth, report what happened in the \
+            "Print and post a new card; the old one is no longer valid. The corrected heading \
+             takes the change into account. Check it by an azimuth, report what happened in the \
              logbook, and expect an adjustment if the deviation is over the limit."
         }
     }

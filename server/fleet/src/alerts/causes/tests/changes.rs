@@ -154,7 +154,7 @@ fn the_advice_follows_the_model_and_the_alert_ends_with_its_certainty() {
         assert_eq!(interim.severity, Severity::Critical);
     }
     let learned = &alerts(3.0, Some(2.0))[0];
-    assert!(learned.advice.starts_with("Put up a new card"));
+    assert!(learned.advice.starts_with("Print and post a new card"));
     assert_eq!(learned.severity, Severity::Warning);
     assert_eq!(alerts(8.0, Some(2.0)), []);
     assert_eq!(alerts(8.0, Some(4.0)).len(), 1, "not learned yet");
