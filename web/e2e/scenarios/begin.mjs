@@ -47,7 +47,10 @@ export const begin = {
       await page.getByLabel('File, .csv').setInputFiles(file(two));
       await page.getByRole('button', { name: 'Add the vessels' }).click();
       await page.getByText('2 vessels are added.').waitFor();
-      const row = page.getByTestId('checklist').getByRole('row').filter({ hasText: 'Nao Victoria' });
+      const row = page
+        .getByTestId('checklist')
+        .getByRole('row')
+        .filter({ hasText: 'Nao Victoria' });
       await row.getByText('Not known').waitFor();
       await row.getByRole('button', { name: 'Record the date' }).click();
       await row.getByLabel('Day on which Nao Victoria was last adjusted').fill('2025-03-01');
