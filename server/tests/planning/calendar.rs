@@ -300,9 +300,9 @@ async fn a_fleet_calendar_covers_all_vessels_and_a_firms_only_its_orders(server:
     let fleet = events(&parties.ada.get("/calendar.ics").await.text);
     let kinds = |begin: &str| fleet.keys().filter(|uid| uid.starts_with(begin)).count();
     assert_eq!(kinds("call-"), 1);
-    // One vessel has no particulars, so all rules apply to it.
-    assert_eq!(kinds("due-"), 2);
-    assert_eq!(fleet.len(), 4);
+    // No adjustment of the other vessel is on record, so nothing is known to be due.
+    assert_eq!(kinds("due-"), 1);
+    assert_eq!(fleet.len(), 3);
     let firms = events(&parties.firms[0].1.get("/calendar.ics").await.text);
     assert_eq!(firms.len(), 1, "{:?}", firms.keys());
     server.finish().await;

@@ -12,7 +12,7 @@ use crate::work_orders::store::StoredOrder;
 use binnacle_adjustment::adjust::{
     AdjustError, Outcome, Step, StepCheck, check_step, check_step_with_setting, check_total_turn,
 };
-use binnacle_adjustment::binnacle::Setting;
+use binnacle_adjustment::binnacle::{Binnacle, Setting};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
@@ -78,122 +78,137 @@ pub(crate) fn judge(
     before_deg: f64,
     after_deg: f64,
 ) -> std::result::Result<RecordedStep, AdjustError> {
-    let result = |verdict, words: String| StepResult {
+    let check = check_step(&plan_request.adjustment(), &step, before_deg, after_deg)?;
+    let judged = Judged::of(&step, check);
+    let result = StepResult {
         number: step.number,
         before_deg,
         after_deg,
         expected_change_deg: step.change_deg,
         tolerance_deg: step.tolerance_deg,
-        verdict,
-        words,
+        verdict: judged.verdict,
+        words: judged.words,
     };
-    let check = check_step(&plan_request.adjustment(), &step, before_deg, after_deg)?;
-    let (result, setting, binnacle, outcome) = match check {
-        StepCheck::Confirmed { off_deg, proven } => (
-            result(
-                StepVerdict::Confirmed,
-                format!("within {:.1} degrees: {}", off_deg.abs(), proven),
-            ),
-            Some(step.setting_after.clone()),
-            None,
-            None,
-        ),
-        StepCheck::NotSeen { .. } => (
-            result(
-                StepVerdict::NotSeen,
-                "on this heading the compass does not show the step: inspect it again".to_owned(),
-            ),
-            Some(step.setting_after.clone()),
-            None,
-            None,
-        ),
-        StepCheck::WrongEnd {
-            turned_deg,
-            setting,
-            outcome,
-        } => (
-            result(
-                StepVerdict::WrongEnd,
-                format!(
-                    "the compass turned by {turned_deg:.1} degrees: the magnets are in with \
-                     the wrong end"
-                ),
-            ),
-            Some(setting),
-            None,
-            Some(outcome),
-        ),
-        StepCheck::FoundOtherwise {
-            turned_deg,
-            binnacle,
-            setting,
-            outcome,
-        } => (
-            result(
-                StepVerdict::FoundOtherwise,
-                format!(
-                    "the compass turned by {turned_deg:.1} degrees: before this step the magnets \
-                     stood with the other end than recorded"
-                ),
-            ),
-            Some(setting),
-            Some(*binnacle),
-            Some(outcome),
-        ),
-        StepCheck::OtherStrength {
-            share,
-            other_hole,
-            binnacle,
-            setting,
-            outcome,
-            ..
-        } => (
-            result(StepVerdict::OtherStrength, strength_text(share, other_hole)),
-            Some(setting),
-            Some(*binnacle),
-            Some(outcome),
-        ),
-        StepCheck::Unexplained { unmoved: true, .. } => (
-            result(
-                StepVerdict::Unexplained,
-                format!(
-                    "the compass did not turn, where {:.1} degrees were expected: was the step \
-                        done, and does the card turn freely? Tap the bowl and read again",
-                    step.change_deg
-                ),
-            ),
-            None,
-            None,
-            None,
-        ),
-        StepCheck::Unexplained { off_deg, .. } => (
-            result(
-                StepVerdict::Unexplained,
-                format!(
-                    "it is off by {off_deg:.1} degrees, which no strength of the corrector \
-                        explains: read again, check whether the ship moved, and look for \
-                        magnetism in the iron"
-                ),
-            ),
-            None,
-            None,
-            None,
-        ),
-    };
-    let result = match &setting {
+    let result = match &judged.setting {
         Some(setting) if result.is_confirmed() => add_total_turn(plan_request, result, setting)?,
         _ => result,
     };
-    let (replanned, refusals) =
-        outcome.map_or((None, Vec::new()), |outcome| split_outcome(*outcome));
+    let (replanned, refusals) = judged
+        .outcome
+        .map_or((None, Vec::new()), |outcome| split_outcome(*outcome));
     Ok(RecordedStep {
         result,
         step,
-        setting,
-        binnacle,
+        setting: judged.setting,
+        binnacle: judged.binnacle,
         replanned,
         refusals,
     })
+}
+
+/// Verdict on a step, in words, and what follows from it.
+struct Judged {
+    verdict: StepVerdict,
+    words: String,
+    /// Setting of the correctors after the step, where it was done.
+    setting: Option<Setting>,
+    /// Binnacle as it turned out to be, where it is another than recorded.
+    binnacle: Option<Binnacle>,
+    /// Outcome of a new plan.
+    outcome: Option<Box<Outcome>>,
+}
+
+impl Judged {
+    fn of(step: &Step, check: StepCheck) -> Judged {
+        let judged = |verdict, words: String| Judged {
+            verdict,
+            words,
+            setting: None,
+            binnacle: None,
+            outcome: None,
+        };
+        match check {
+            StepCheck::Confirmed { off_deg, proven } => {
+                let words = format!("within {:.1} degrees: {proven}", off_deg.abs());
+                Judged {
+                    setting: Some(step.setting_after.clone()),
+                    ..judged(StepVerdict::Confirmed, words)
+                }
+            }
+            StepCheck::NotSeen { .. } => {
+                let words = "on this heading the compass does not show the step: inspect it again";
+                Judged {
+                    setting: Some(step.setting_after.clone()),
+                    ..judged(StepVerdict::NotSeen, words.to_owned())
+                }
+            }
+            StepCheck::WrongEnd {
+                turned_deg,
+                setting,
+                outcome,
+            } => {
+                let words = format!(
+                    "the compass turned by {turned_deg:.1} degrees: the magnets are in with the \
+                     wrong end"
+                );
+                Judged {
+                    setting: Some(setting),
+                    outcome: Some(outcome),
+                    ..judged(StepVerdict::WrongEnd, words)
+                }
+            }
+            StepCheck::FoundOtherwise {
+                turned_deg,
+                binnacle,
+                setting,
+                outcome,
+            } => {
+                let words = format!(
+                    "the compass turned by {turned_deg:.1} degrees: before this step the magnets \
+                     stood with the other end than recorded"
+                );
+                Judged {
+                    setting: Some(setting),
+                    binnacle: Some(*binnacle),
+                    outcome: Some(outcome),
+                    ..judged(StepVerdict::FoundOtherwise, words)
+                }
+            }
+            StepCheck::OtherStrength {
+                share,
+                other_hole,
+                binnacle,
+                setting,
+                outcome,
+                ..
+            } => Judged {
+                setting: Some(setting),
+                binnacle: Some(*binnacle),
+                outcome: Some(outcome),
+                ..judged(StepVerdict::OtherStrength, strength_text(share, other_hole))
+            },
+            StepCheck::Unexplained {
+                off_deg, unmoved, ..
+            } => judged(
+                StepVerdict::Unexplained,
+                unexplained_text(step, off_deg, unmoved),
+            ),
+        }
+    }
+}
+
+fn unexplained_text(step: &Step, off_deg: f64, unmoved: bool) -> String {
+    if unmoved {
+        return format!(
+            "the compass did not turn, where {:.1} degrees were expected: was the step done, and \
+             does the card turn freely? Tap the bowl and read again",
+            step.change_deg
+        );
+    }
+    format!(
+        "it is off by {off_deg:.1} degrees, which no strength of the corrector explains: read \
+         again, check whether the ship moved, and look for magnetism in the iron"
+    )
 }
 
 fn strength_text(share: f64, other_hole: Option<u16>) -> String {

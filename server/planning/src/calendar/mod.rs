@@ -189,13 +189,10 @@ where
         if let Some(token) = address.token {
             let app = App::from_ref(state);
             let found = store::find(&app.db, &secret::hash(&token)).await?;
-            return match found {
-                Some(scope) => Ok(scope),
-                None => {
-                    RequestContext::of(parts)?.refuse(Refusal::InvalidCode, None);
-                    Err(Error::Unauthenticated)
-                }
-            };
+            if found.is_none() {
+                RequestContext::of(parts)?.refuse(Refusal::InvalidCode, None);
+            }
+            return found.ok_or(Error::Unauthenticated);
         }
         let reader = PartyReader::from_request_parts(parts, state).await?;
         Ok(Scope {

@@ -224,7 +224,7 @@ async fn apply(
         errors: FileErrors::default(),
         over: 0,
     };
-    let done = store_file(app, tx, writer, file, Source::Api, false).await?;
+    let done = Box::pin(store_file(app, tx, writer, file, Source::Api, false)).await?;
     Ok(Effect::of(&done))
 }
 

@@ -102,7 +102,7 @@ async fn upload_fleet_csv(
     let tx = request.begin().await?;
     let replaces = options.replace.unwrap_or(false);
     Ok(Json(
-        store_file(&app, tx, writer, file, Source::Csv, replaces).await?,
+        Box::pin(store_file(&app, tx, writer, file, Source::Csv, replaces)).await?,
     ))
 }
 
@@ -147,7 +147,7 @@ async fn upload_csv(
     let tx = request.begin().await?;
     let replaces = options.replace.unwrap_or(false);
     Ok(Json(
-        store_file(&app, tx, writer, file, Source::Csv, replaces).await?,
+        Box::pin(store_file(&app, tx, writer, file, Source::Csv, replaces)).await?,
     ))
 }
 
@@ -224,7 +224,15 @@ async fn upload_ics(
     let tx = request.begin().await?;
     let replaces = options.replace.unwrap_or(false);
     Ok(Json(
-        store_file(&app, tx, writer, file, Source::Icalendar, replaces).await?,
+        Box::pin(store_file(
+            &app,
+            tx,
+            writer,
+            file,
+            Source::Icalendar,
+            replaces,
+        ))
+        .await?,
     ))
 }
 

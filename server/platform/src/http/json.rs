@@ -75,7 +75,7 @@ pub fn text(field: &'static str, value: &str) -> Result<String> {
         "is longer than 200 characters"
     } else if value.chars().any(is_control) {
         "has control characters, or characters that change the direction of writing"
-    } else if value.chars().any(is_invisible) {
+    } else if hides_something(value) {
         "has characters that cannot be seen"
     } else {
         return Ok(value.to_owned());
@@ -95,11 +95,36 @@ pub fn is_control(c: char) -> bool {
     turns || c.is_control() || matches!(c, '\u{2028}' | '\u{2029}')
 }
 
-/// Checks for a character that takes no place or looks like a blank, and so makes two names look
-/// alike (Unicode Standard, section 23.2; Default_Ignorable_Code_Point).
+/// Checks for characters that cannot be seen, and so make two names look alike. A joiner is one
+/// unless it is between letters that join (RFC 5892, appendices A.1 and A.2).
+fn hides_something(text: &str) -> bool {
+    let mut before = None;
+    let mut characters = text.chars().peekable();
+    while let Some(c) = characters.next() {
+        let is_hidden = match c {
+            '\u{200c}' | '\u{200d}' => ![before, characters.peek().copied()]
+                .into_iter()
+                .all(|beside| beside.is_some_and(is_joining)),
+            _ => is_invisible(c),
+        };
+        if is_hidden {
+            return true;
+        }
+        before = Some(c);
+    }
+    false
+}
+
+/// Checks for a character of the scripts that join, Arabic to Sinhala and Myanmar.
+fn is_joining(c: char) -> bool {
+    matches!(c, '\u{620}'..='\u{dff}' | '\u{1000}'..='\u{109f}')
+}
+
+/// Checks for a character that takes no place or looks like a blank (Unicode Standard, section 23.2;
+/// Default_Ignorable_Code_Point).
 fn is_invisible(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{34f}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}'
-                | '\u{180b}'..='\u{180f}' | '\u{200b}'..='\u{200d}' | '\u{2060}'..='\u{206f}'
+                | '\u{180b}'..='\u{180f}' | '\u{200b}' | '\u{2060}'..='\u{206f}'
                 | '\u{2800}' | '\u{3164}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{ffa0}'
                 | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e0fff}')
 }
@@ -157,11 +182,21 @@ mod tests {
 
     #[test]
     fn a_name_with_characters_that_cannot_be_seen_is_refused() {
-        for seen in ["Nao Victoria", "Šibenik", "ἀργώ", "新しい船", "Ærø 2"] {
+        for seen in [
+            "Nao Victoria",
+            "Šibenik",
+            "ἀργώ",
+            "新しい船",
+            "Ærø 2",
+            "می\u{200c}خواهم",
+            "क्\u{200d}ष",
+        ] {
             assert_eq!(text("name", seen).unwrap(), seen);
         }
         for hidden in [
             "Nao\u{200b}Victoria",
+            "Nao\u{200c}Victoria",
+            "\u{200d}می",
             "Nao\u{feff}",
             "\u{2060}Nao",
             "Na\u{ad}o",

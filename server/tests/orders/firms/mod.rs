@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 on_both!(
     a_platform_admin_engages_a_firm_for_an_operator,
-    only_a_platform_admin_manages_operators_and_firms,
+    only_a_platform_admin_manages_operators_and_engages_firms,
     a_firm_with_an_open_order_cannot_be_disengaged,
     names_with_direction_overrides_are_refused,
     an_operator_sees_its_engaged_firms,
@@ -108,7 +108,7 @@ async fn names_with_direction_overrides_are_refused(server: TestServer) {
     server.finish().await;
 }
 
-async fn only_a_platform_admin_manages_operators_and_firms(server: TestServer) {
+async fn only_a_platform_admin_manages_operators_and_engages_firms(server: TestServer) {
     let ada = server.admin("ada").await;
     let (firm, rosa) = ada.adjuster(&server, "rosa").await;
     let new = json!({ "name": "Other" });
@@ -118,13 +118,16 @@ async fn only_a_platform_admin_manages_operators_and_firms(server: TestServer) {
             person.get("/operators").await,
             person.get(&format!("/operators/{}", ada.operator)).await,
             person.post("/operators", &new).await,
-            person.post("/firms", &new).await,
             ApiResponse::send(person.request(Method::PUT, &between)).await,
             ApiResponse::send(person.request(Method::DELETE, &between)).await,
         ];
         for response in refused {
             assert_eq!(response.problem(), "forbidden");
         }
+    }
+    for person in [&rosa, &ada.viewer(&server).await] {
+        let refused = person.post("/firms", &new).await;
+        assert_eq!(refused.problem(), "forbidden");
     }
     let root = ada.platform_admin(&server).await;
     assert_eq!(root.post("/operators", &new).await.status, 201);

@@ -175,6 +175,9 @@ impl Side {
             "PUT /operators/{id}/quotas/{quota}" => json!({ "most": 1000 }),
             "POST /tokens" => json!({ "name": "ERP", "scope": "read" }),
             "POST /firms" | "POST /operators" => json!({ "name": "New" }),
+            "POST /firms/{id}/users" | "POST /operators/{id}/users" => {
+                json!({ "email": "new@example.com", "name": "New" })
+            }
             "PUT /me/password" => {
                 json!({ "current": PASSWORD, "new": "seven gulls over the quay" })
             }

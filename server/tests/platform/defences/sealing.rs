@@ -57,15 +57,15 @@ impl Owner {
     }
 }
 
+/// Secrets as they are stored, each with the key that sealed it.
+type Stored<T> = Vec<(T, Option<String>)>;
+
 /// Returns what the database stores of each secret.
-async fn stored(db: &Db) -> Vec<(String, Option<String>)> {
+async fn stored(db: &Db) -> Stored<String> {
     let sql = "SELECT secret, sealed_by FROM webhooks ORDER BY id";
     let bytes = "SELECT secret, sealed_by FROM second_factors
                  UNION ALL SELECT secret, sealed_by FROM signing_keys";
-    let (mut texts, bytes): (
-        Vec<(String, Option<String>)>,
-        Vec<(Vec<u8>, Option<String>)>,
-    ) = match db.pools() {
+    let (mut texts, bytes): (Stored<String>, Stored<Vec<u8>>) = match db.pools() {
         Pools::Sqlite { readers, .. } => (
             sqlx::query_as(sql).fetch_all(readers).await.unwrap(),
             sqlx::query_as(bytes).fetch_all(readers).await.unwrap(),

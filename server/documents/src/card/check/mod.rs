@@ -157,7 +157,7 @@ async fn check(app: &App, code: &str) -> Result<CardCheck> {
     let described = [
         Some(compass.name),
         compass.make,
-        compass.serial_number.map(number),
+        compass.serial_number.map(|serial| format!("no. {serial}")),
     ];
     Ok(CardCheck {
         state,
@@ -175,10 +175,6 @@ async fn check(app: &App, code: &str) -> Result<CardCheck> {
         rows: rows(&content).collect(),
         largest_difference_deg: apart.map(|apart| apart.largest_deg),
     })
-}
-
-fn number(serial: String) -> String {
-    format!("no. {serial}")
 }
 
 fn rows(content: &CardContent) -> impl Iterator<Item = CheckedRow> {
