@@ -195,6 +195,9 @@ def interpolated(card, compass_deg):
     part = (compass_deg % 360 - 15 * low) / 15
     return card[low] + part * (card[(low + 1) % 24] - card[low])
 
+# A compass that passed every check alongside.
+SOUND = {check: "sound" for check in ["bubble", "pivot", "gimbals", "lubber_line"]}
+
 
 class Mission:
     def __init__(self, args):
@@ -327,6 +330,8 @@ class Mission:
         adjuster.post(path + "/on-board", arrived)
         if until == "on_board":
             return order
+        recorded = adjuster.get(path + "/binnacle")["binnacle"]["setting"]
+        adjuster.post(path + "/as-found", {"setting": recorded, "dockside": SOUND, "photos": []})
         adjuster.post(path + "/berth-reading", self.reading(name, earth, at or self.now))
         if until == "measured":
             return order

@@ -79,8 +79,8 @@ fn every_field_is_described() {
     };
     let parameters = fields["parameters_over_lambda"].as_object().unwrap();
     let quality = fields["quality"].as_object().unwrap();
-    // Written only where the reference is not a heading.
-    let of_other_models = ["reference_grade".to_owned()];
+    // Written only where the reference is not a heading, and where a fit or a binnacle has them.
+    let of_other_models = ["reference_grade", "mean_h_nt", "needles"].map(str::to_owned);
     let written = fields.keys().chain(parameters.keys()).chain(quality.keys());
     let written = written.chain(&of_other_models);
     assert_eq!(written.clone().count(), described.len());

@@ -3,15 +3,13 @@
 //! A copy of the compass comes late, now more and now less. One by one it is some reading of the
 //! last moments, to its digits: where a compass is read once a second or the ship yaws much, that
 //! shows. Where it is read often, any of its readings may be the one, and only means show that the
-//! two never part. Displays and autopilots damp or average what they repeat: so the means are also
-//! of the compass through the filter, whichever it is, by which its last minute comes closest to
-//! the reference. An independent instrument differs either way.
+//! two never part. Displays and autopilots smooth what they repeat: so the means are also of the
+//! compass smoothed. An independent instrument differs either way.
 
 use binnacle_analysis::fit::{HeadingPair, SharedNoise, weigh_independence};
 use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation, wrap_180, wrap_360};
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
-use nalgebra::{SMatrix, SVector};
 use std::collections::{BTreeMap, VecDeque};
 
 /// Delay of a copy, seconds, within which a reading of the compass may be its original.
@@ -24,20 +22,9 @@ const READINGS_OF_MEAN: usize = 20;
 /// Readings from one mean to the next. Means that overlap are not counted twice: what counts is
 /// the number of headings.
 const READINGS_TO_NEXT: usize = 10;
-/// Edges of the blocks of the compass's past of which a repeater's filter is made, seconds: within
-/// a block all readings have one weight. A damping of 14 s has a fortieth of its weight beyond.
-const BLOCK_EDGES_S: [f64; BLOCKS + 1] = [0.0, 1.0, 3.0, 6.0, 11.0, 18.0, 29.0, 47.0, 75.0];
-const BLOCKS: usize = 8;
-/// Usual weight of a block, and noise of a copy's mean beside it, degrees.
-const USUAL_WEIGHT: f64 = 0.3;
-const NOISE_OF_MEAN_DEG: f64 = 0.03;
-/// Usual change of the deviation between two means on opposite headings, degrees.
-const USUAL_DEVIATION_DEG: f64 = 10.0;
-/// Time over which the rate of the compass is the mean, and after which it is silent, seconds.
-const RATE_OVER_S: f64 = 30.0;
-const SILENCE_S: f64 = 2.5;
-/// Greatest rate of readings that are kept, Hz.
-const MAX_RATE_HZ: f64 = 100.0;
+/// Time constants by which a repeater may smooth the compass, seconds: none, and steps of damping.
+/// Between two of them it is a mix of both, very nearly.
+const SMOOTHING_S: [f64; 7] = [0.0, 2.0, 3.0, 4.5, 6.5, 9.5, 14.0];
 /// Interval of the readings of the reference that count, seconds.
 const INTERVAL_S: f64 = 1.0;
 /// Longest gap within a mean, seconds: some receivers give the time every few seconds.
@@ -61,21 +48,16 @@ pub(super) struct Circumstances {
     pub(super) variation: Variation,
 }
 
-/// Mean of the compass in each block of its past, less its present reading, degrees.
-type Past = [f64; BLOCKS];
-
 /// Latest readings of the compass.
 #[derive(Debug, Default)]
 pub(super) struct RecentCompass {
-    /// Headings without a step at north, the newest last, degrees, and the sum up to each.
-    readings_deg: VecDeque<f64>,
-    sums_deg: VecDeque<f64>,
-    /// Readings since the clock advanced.
+    readings: VecDeque<CompassHeading>,
+    /// Readings since the clock advanced, and a second before.
     since_advance: usize,
+    rate_hz: f64,
     advanced: Option<Timestamp>,
-    /// Readings of late, and the time that they took, seconds.
-    lately: (f64, f64),
-    silent_s: f64,
+    /// Compass as each time constant smooths it, degrees.
+    smoothed_deg: Option<[f64; SMOOTHING_S.len()]>,
 }
 
 impl RecentCompass {
@@ -88,66 +70,39 @@ impl RecentCompass {
         self.advanced = Some(now);
         let count = std::mem::take(&mut self.since_advance) as f64;
         let passed_s = passed_s.filter(|passed_s| (INTERVAL_S..=MAX_GAP_S).contains(passed_s));
-        self.silent_s = match passed_s {
-            Some(passed_s) if count <= 0.0 => self.silent_s + passed_s,
-            _ => 0.0,
-        };
-        let Some(passed_s) = passed_s.filter(|_| self.silent_s <= SILENCE_S) else {
-            // A compass that is read no more makes no pair.
-            *self = RecentCompass {
-                advanced: self.advanced,
-                ..RecentCompass::default()
-            };
-            return;
-        };
-        let kept = (-passed_s / RATE_OVER_S).exp();
-        let (readings, took_s) = self.lately;
-        self.lately = (readings * kept + count, took_s * kept + passed_s);
-    }
-
-    fn rate_hz(&self) -> f64 {
-        let (readings, took_s) = self.lately;
-        if took_s > 0.0 { readings / took_s } else { 0.0 }
+        self.rate_hz = passed_s.map_or(0.0, |passed_s| count / passed_s);
+        // A compass that is read no more makes no pair.
+        if self.rate_hz <= 0.0 {
+            self.readings.clear();
+            self.smoothed_deg = None;
+        }
     }
 
     /// Adds a reading.
     pub(super) fn add(&mut self, compass: CompassHeading) {
         self.since_advance += 1;
-        let degrees = self.readings_deg.back().map_or(compass.degrees(), |last| {
-            last + wrap_180(compass.degrees() - last)
-        });
-        self.readings_deg.push_back(degrees);
-        self.sums_deg
-            .push_back(self.sums_deg.back().unwrap_or(&0.0) + degrees);
-        let rate_hz = self.rate_hz().clamp(1.0, MAX_RATE_HZ);
-        // Some more, for the rate is not quite steady.
-        let kept = (1.2 * rate_hz * BLOCK_EDGES_S[BLOCKS]) as usize + 2;
-        let old = self.readings_deg.len().saturating_sub(kept);
-        self.readings_deg.drain(..old);
-        self.sums_deg.drain(..old);
+        if self.readings.len() == *CANDIDATES.end() {
+            self.readings.pop_front();
+        }
+        self.readings.push_back(compass);
+        self.smooth(compass.degrees());
+    }
+
+    fn smooth(&mut self, compass_deg: f64) {
+        let known = self.smoothed_deg.filter(|_| self.rate_hz > 0.0);
+        let mut smoothed_deg = known.unwrap_or([compass_deg; SMOOTHING_S.len()]);
+        for (smoothed, constant_s) in smoothed_deg.iter_mut().zip(SMOOTHING_S) {
+            let share = -(-1.0 / (self.rate_hz * constant_s)).exp_m1();
+            *smoothed += share.min(1.0) * wrap_180(compass_deg - *smoothed);
+        }
+        self.smoothed_deg = Some(smoothed_deg);
     }
 
     /// Returns the readings that a copy may repeat, the latest first.
     fn candidates(&self) -> impl Iterator<Item = CompassHeading> {
         let count =
-            ((DELAY_S * self.rate_hz()) as usize).clamp(*CANDIDATES.start(), *CANDIDATES.end());
-        let latest = self.readings_deg.iter().rev().take(count);
-        latest.filter_map(|degrees| CompassHeading::new(wrap_360(*degrees)))
-    }
-
-    /// Returns the past of the compass; none where it is too short.
-    fn past(&self) -> Option<Past> {
-        let newest = self.readings_deg.len().checked_sub(1)?;
-        let rate_hz = Some(self.rate_hz()).filter(|rate_hz| *rate_hz > 0.0)?;
-        let place = |edge_s: f64| newest.checked_sub((edge_s * rate_hz) as usize);
-        let mut past = Past::default();
-        for (block_deg, edges_s) in past.iter_mut().zip(BLOCK_EDGES_S.windows(2)) {
-            let to = place(edges_s[0])?;
-            let from = place(edges_s[1])?.min(to.checked_sub(1)?);
-            let mean_deg = (self.sums_deg[to] - self.sums_deg[from]) / (to - from) as f64;
-            *block_deg = mean_deg - self.readings_deg[newest];
-        }
-        Some(past)
+            ((DELAY_S * self.rate_hz) as usize).clamp(*CANDIDATES.start(), *CANDIDATES.end());
+        self.readings.iter().rev().take(count).copied()
     }
 }
 
@@ -161,18 +116,18 @@ pub(super) struct ReferencePairs {
     new_means: u32,
 }
 
-/// Means of the reference, the compass and its past.
+/// Means of the reference and of the compass, as it is and smoothed.
 #[derive(Debug, Default)]
 struct Means {
-    sectors: Sectors<Mean>,
-    latest: VecDeque<Mean>,
+    sectors: Sectors<Smoothed>,
+    latest: VecDeque<Smoothed>,
 }
 
-/// A pair, and the past of its compass.
+/// A pair, and how far the compass smoothed by each time constant is from its own reading, degrees.
 #[derive(Clone, Copy, Debug)]
-struct Mean {
+struct Smoothed {
     pair: HeadingPair,
-    past: Past,
+    off_deg: [f64; SMOOTHING_S.len()],
 }
 
 /// Reading of the reference with the latest reading of the compass, and with the nearest.
@@ -218,16 +173,14 @@ impl ReferencePairs {
             log_choices: (compass.candidates().count() as f64).ln(),
         };
         self.singles.add(single);
-        let Some(past) = compass.past() else {
-            return;
-        };
         let middle = middle(compass.candidates(), latest);
-        let nearer_deg = wrap_180(latest.degrees() - middle.degrees());
-        let mean = Mean {
-            pair: pair(middle),
-            past: past.map(|degrees| degrees + nearer_deg),
-        };
-        self.new_means += u32::from(self.means.add(mean, at.time));
+        let off_deg = compass
+            .smoothed_deg
+            .map_or([0.0; SMOOTHING_S.len()], |smoothed| {
+                smoothed.map(|degrees| wrap_180(degrees - middle.degrees()))
+            });
+        let pair = pair(middle);
+        self.new_means += u32::from(self.means.add(Smoothed { pair, off_deg }, at.time));
     }
 
     /// Returns whether the pairs are to be weighed.
@@ -266,7 +219,7 @@ impl ReferencePairs {
 
 impl Means {
     /// Adds a pair. Returns whether it makes a mean.
-    fn add(&mut self, one: Mean, time: Timestamp) -> bool {
+    fn add(&mut self, one: Smoothed, time: Timestamp) -> bool {
         let last = self.latest.back().and_then(|last| last.pair.time);
         if last.is_some_and(|last| time.seconds_since(last).abs() > MAX_GAP_S) {
             self.latest.clear();
@@ -281,69 +234,53 @@ impl Means {
         true
     }
 
-    /// Weighs the means with the compass as it is, and through a filter.
+    /// Weighs the means with the compass as it is, and as it is between each two steps of smoothing.
     fn weigh(&mut self, now: Timestamp) -> Option<Vec<SharedNoise>> {
         self.sectors.forget(now);
-        let mut means: Vec<Mean> = self.sectors.all().copied().collect();
+        let mut means: Vec<Smoothed> = self.sectors.all().copied().collect();
         means.sort_by_key(|mean| mean.pair.time);
         let pairs: Vec<_> = means.iter().map(|mean| mean.pair).collect();
         let mut weighed = vec![weigh_independence(&pairs)?];
-        // Through a filter the compass may hardly turn: then it proves nothing.
-        let filtered = filtered(&means);
-        weighed.extend(filtered.and_then(|pairs| weigh_independence(&pairs)));
+        for step in 1..SMOOTHING_S.len() {
+            // A smoothed compass may hardly turn: then it proves nothing.
+            weighed.extend(weigh_independence(&mixed(&means, step)));
+        }
         Some(weighed)
     }
 }
 
-/// Number of unknowns of a filter: weights of its blocks, and the change of a deviation.
-const UNKNOWNS: usize = BLOCKS + 4;
-
-/// Returns the pairs with the compass through the filter that comes closest to the reference.
-///
-/// Its weights are found by least squares of the changes from mean to mean, beside those of a
-/// deviation of four coefficients, each with a prior of its usual size.
-fn filtered(means: &[Mean]) -> Option<Vec<HeadingPair>> {
-    let mut usual = SVector::<f64, UNKNOWNS>::repeat(USUAL_DEVIATION_DEG);
-    usual.rows_mut(0, BLOCKS).fill(USUAL_WEIGHT);
-    let prior = usual.map(|usual| (NOISE_OF_MEAN_DEG / usual).powi(2));
-    let mut normal = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_diagonal(&prior);
-    let mut right = SVector::<f64, UNKNOWNS>::zeros();
+/// Returns pairs with the mix of the compass between two steps of smoothing that the reference
+/// follows best.
+fn mixed(means: &[Smoothed], step: usize) -> Vec<HeadingPair> {
+    let (mut product, mut square) = (0.0, 0.0);
     for two in means.windows(2) {
-        let column = columns(&two[1]) - columns(&two[0]);
-        let difference = |mean: &Mean| {
-            let compass_deg = mean.pair.compass.degrees() + mean.pair.variation.degrees_east();
+        let change = |value: &dyn Fn(&Smoothed) -> f64| wrap_180(value(&two[1]) - value(&two[0]));
+        let smoother = change(&|mean| mean.off_deg[step] - mean.off_deg[step - 1]);
+        let apart = change(&|mean| {
+            let compass_deg = mean.pair.compass.degrees() + mean.off_deg[step - 1];
             mean.pair.reference.degrees() - compass_deg
-        };
-        let change_deg = wrap_180(difference(&two[1]) - difference(&two[0]));
-        normal += column * column.transpose();
-        right += column * change_deg;
+        });
+        product += smoother * apart;
+        square += smoother * smoother;
     }
-    let weights = normal.cholesky()?.solve(&right);
-    let filter = |mean: &Mean| {
-        let off_deg: f64 = weights
-            .iter()
-            .zip(mean.past)
-            .map(|(w, past)| w * past)
-            .sum();
-        let degrees = wrap_360(mean.pair.compass.degrees() + off_deg);
-        let compass = CompassHeading::new(degrees).unwrap_or(mean.pair.compass);
+    let share = if square > 0.0 {
+        (product / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let mix = |mean: &Smoothed| {
+        let off_deg = mean.off_deg[step - 1] * (1.0 - share) + mean.off_deg[step] * share;
+        let compass = CompassHeading::new(mean.pair.compass.degrees() + off_deg);
         HeadingPair {
-            compass,
+            compass: compass.unwrap_or(mean.pair.compass),
             ..mean.pair
         }
     };
-    Some(means.iter().map(filter).collect())
-}
-
-/// Returns the columns of a mean: the past of its compass, and a deviation on its heading.
-fn columns(mean: &Mean) -> SVector<f64, UNKNOWNS> {
-    let (sin, cos) = mean.pair.compass.radians().sin_cos();
-    let deviation = [sin, cos, 2.0 * sin * cos, cos * cos - sin * sin];
-    SVector::from_iterator(mean.past.into_iter().chain(deviation))
+    means.iter().map(mix).collect()
 }
 
 /// Returns the means of compass and reference, about one of the pairs.
-fn mean(all: &VecDeque<Mean>, about: HeadingPair) -> Mean {
+fn mean(all: &VecDeque<Smoothed>, about: HeadingPair) -> Smoothed {
     let count = all.len() as f64;
     let mean_of = |heading: fn(&HeadingPair) -> f64| {
         let offs = all
@@ -353,14 +290,14 @@ fn mean(all: &VecDeque<Mean>, about: HeadingPair) -> Mean {
     };
     let compass = CompassHeading::new(mean_of(|pair| pair.compass.degrees()));
     let reference = TrueHeading::new(mean_of(|pair| pair.reference.degrees()));
-    let past = |block: usize| all.iter().map(|one| one.past[block]).sum::<f64>() / count;
-    Mean {
+    let off = |step: usize| all.iter().map(|one| one.off_deg[step]).sum::<f64>() / count;
+    Smoothed {
         pair: HeadingPair {
             compass: compass.unwrap_or(about.compass),
             reference: reference.unwrap_or(about.reference),
             ..about
         },
-        past: std::array::from_fn(past),
+        off_deg: std::array::from_fn(off),
     }
 }
 
@@ -394,7 +331,7 @@ impl Paired for Single {
     }
 }
 
-impl Paired for Mean {
+impl Paired for Smoothed {
     fn pair(&self) -> &HeadingPair {
         &self.pair
     }

@@ -109,10 +109,13 @@ async fn invite_adjuster(
 ) -> Result<(StatusCode, Json<Invitation>)> {
     founder.must_be_in_person()?;
     let who = founder.operator.map(Tenant::Operator);
-    let Json(firm) = found(&app, who, id).await?;
-    if founder.operator.is_some() && !firm.is_own {
-        let shared = "only a platform admin invites users of a firm that others work with too";
+    let firm = store::find(&app.db, who, id).await?;
+    if founder.operator.is_some() && !firm.as_ref().is_some_and(|firm| firm.is_own) {
+        let shared = "only a platform admin invites users of a firm that is not yours alone";
         return Err(Error::Forbidden(shared));
+    }
+    if firm.is_none() {
+        return Err(Error::NotFound("firm"));
     }
     let invited = users::invite(&app, &request, &new, id.into(), Role::Adjuster).await?;
     Ok((StatusCode::CREATED, Json(invited)))

@@ -142,7 +142,9 @@ async fn invite_again(
 #[utoipa::path(post, path = "/password-resets", tag = "people", security(()),
     request_body = Forgotten,
     responses((status = 202, description = "A letter is sent if the address has an account"),
-              (status = 409, description = "Mail is not set up on this server", body = Problem)))]
+              (status = 400, body = Problem),
+              (status = 409, description = "Mail is not set up on this server", body = Problem),
+              (status = 422, body = Problem)))]
 async fn request_password_reset(
     State(app): State<App>,
     request: RequestContext,

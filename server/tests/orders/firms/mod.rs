@@ -112,7 +112,8 @@ async fn only_a_platform_admin_manages_operators_and_engages_firms(server: TestS
     let ada = server.admin("ada").await;
     let (firm, rosa) = ada.adjuster(&server, "rosa").await;
     let new = json!({ "name": "Other" });
-    for person in [&ada, &rosa, &ada.viewer(&server).await] {
+    let viewer = ada.viewer(&server).await;
+    for person in [&ada, &rosa, &viewer] {
         let between = format!("/operators/{}/firms/{firm}", ada.operator);
         let refused = [
             person.get("/operators").await,
@@ -125,7 +126,7 @@ async fn only_a_platform_admin_manages_operators_and_engages_firms(server: TestS
             assert_eq!(response.problem(), "forbidden");
         }
     }
-    for person in [&rosa, &ada.viewer(&server).await] {
+    for person in [&rosa, &viewer] {
         let refused = person.post("/firms", &new).await;
         assert_eq!(refused.problem(), "forbidden");
     }

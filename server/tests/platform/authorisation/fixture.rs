@@ -178,6 +178,7 @@ impl Side {
             "POST /firms/{id}/users" | "POST /operators/{id}/users" => {
                 json!({ "email": "new@example.com", "name": "New" })
             }
+            "PUT /me/fleet-views" => json!({ "items": [] }),
             "PUT /me/password" => {
                 json!({ "current": PASSWORD, "new": "seven gulls over the quay" })
             }
