@@ -92,7 +92,10 @@ async fn an_operators_own_firm_is_seen_by_nobody_else_until_it_is_connected(serv
         eve.get(&format!("/firms/{id}")).await.problem(),
         "not-found"
     );
-    assert_eq!(eve.post(&users, &rosa).await.problem(), "not-found");
+    // The response is that for a firm that there is not.
+    assert_eq!(eve.post(&users, &rosa).await.problem(), "forbidden");
+    let nowhere = format!("/firms/{}/users", eve.operator);
+    assert_eq!(eve.post(&nowhere, &rosa).await.problem(), "forbidden");
     let invited = ada.post(&users, &rosa).await.good();
     let accepted = json!({ "code": invited["code"], "password": "seven gulls over the quay" });
     send(&server, "/invitations/accept", &accepted).await.good();
