@@ -248,12 +248,12 @@ export const alerts = {
       await page.getByLabel('Address').fill('https://127.0.0.1/hook');
       await made.click();
       await page.getByRole('alert').getByText('not an address of the public internet').waitFor();
-      // A name that no resolver knows (RFC 2606).
-      await page.getByLabel('Address').fill('https://hooks.invalid/binnacle');
+      // A name that no resolver knows: it is in no zone of the root.
+      await page.getByLabel('Address').fill('https://hooks.not-in-the-root/binnacle');
       await made.click();
       await page.getByText(/^bns_/).waitFor();
       await page.getByRole('button', { name: 'Done' }).click();
-      const card = page.getByRole('article').filter({ hasText: 'hooks.invalid' });
+      const card = page.getByRole('article').filter({ hasText: 'hooks.not-in-the-root' });
       await card.getByRole('button', { name: 'Send a test' }).click();
       await card.getByTestId('deliveries').getByText('waiting').waitFor();
       await card.getByTestId('deliveries').getByText('1 try').waitFor();
