@@ -11,7 +11,8 @@ mod imo;
 mod store;
 
 pub use store::{
-    VesselNames, VesselRow, find_owner, find_row, is_in_service, must_be_in_fleet, names,
+    VesselNames, VesselRow, find_operator, find_owner, find_row, is_in_service, must_be_in_fleet,
+    names,
 };
 pub(crate) use store::{insert, list, lock, require_free_imo, set_out_of_service, update};
 

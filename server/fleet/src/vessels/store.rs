@@ -66,6 +66,17 @@ pub fn find_owner<'a>(
     })
 }
 
+/// Finds the operator of a vessel.
+pub async fn find_operator(db: &Db, id: VesselId) -> Result<Option<OperatorId>> {
+    let found = row!(
+        db,
+        (OperatorId,),
+        "SELECT operator_id FROM vessels WHERE id = $1 ORDER BY id",
+        id
+    )?;
+    Ok(found.map(|(operator,)| operator))
+}
+
 pub(crate) async fn list(
     db: &Db,
     operator: OperatorId,

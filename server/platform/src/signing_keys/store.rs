@@ -3,7 +3,7 @@
 use super::{PublishedKey, ServerKey};
 use crate::db::{self, Db, Tx, execute, row, rows};
 use crate::error::Result;
-use crate::sealing::StoredSecret;
+use crate::sealing::{Seals, StoredSecret};
 use crate::secret;
 use crate::time::Time;
 use ed25519_dalek::SigningKey;
@@ -15,20 +15,36 @@ use ed25519_dalek::SigningKey;
 pub async fn current(tx: &mut Tx, now: Time) -> Result<ServerKey> {
     let found = row!(
         in &mut *tx,
-        (String, Vec<u8>, Option<String>),
+        StoredKey,
         "SELECT public_key, secret, sealed_by FROM signing_keys WHERE retired_at IS NULL
          ORDER BY created_at DESC, public_key LIMIT 1"
     )?;
-    let Some((public_key, bytes, sealed_by)) = found else {
-        return Ok(insert(tx, now).await?);
-    };
-    let stored = StoredSecret { bytes, sealed_by };
-    let secret = tx
-        .seals()
-        .open(&row_of(&public_key), &stored)
-        .map_err(sqlx::Error::from)?;
-    let key = ServerKey::from_secret(&secret);
-    Ok(key.ok_or_else(|| anyhow::anyhow!("the signing key {public_key} is damaged"))?)
+    match found {
+        Some(stored) => stored.open(tx.seals()),
+        None => Ok(insert(tx, now).await?),
+    }
+}
+
+/// Key as it is stored, sealed or not.
+#[derive(sqlx::FromRow)]
+struct StoredKey {
+    public_key: String,
+    secret: Vec<u8>,
+    sealed_by: Option<String>,
+}
+
+impl StoredKey {
+    fn open(self, seals: &Seals) -> Result<ServerKey> {
+        let stored = StoredSecret {
+            bytes: self.secret,
+            sealed_by: self.sealed_by,
+        };
+        let secret = seals
+            .open(&row_of(&self.public_key), &stored)
+            .map_err(sqlx::Error::from)?;
+        let key = ServerKey::from_secret(&secret);
+        Ok(key.ok_or_else(|| anyhow::anyhow!("the signing key {} is damaged", self.public_key))?)
+    }
 }
 
 /// Returns the name of a key, to which its seal is bound.
@@ -36,11 +52,20 @@ fn row_of(public_key: &str) -> String {
     format!("signing key {public_key}")
 }
 
-/// Returns the key that signs now, outside a transaction.
+/// Returns the key that signs now, outside a transaction. Only the first one is written.
 ///
 /// # Errors
 /// Fails when the database fails.
 pub async fn of_server(db: &Db, now: Time) -> Result<ServerKey> {
+    let found = row!(
+        db,
+        StoredKey,
+        "SELECT public_key, secret, sealed_by FROM signing_keys WHERE retired_at IS NULL
+         ORDER BY created_at DESC, public_key LIMIT 1"
+    )?;
+    if let Some(stored) = found {
+        return stored.open(db.seals());
+    }
     let mut tx = db.begin().await?;
     let key = current(&mut tx, now).await?;
     tx.commit().await?;
