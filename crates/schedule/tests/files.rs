@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
-use binnacle_schedule::calls::{FileErrors, MAX_LISTED, PortCall, csv, ics};
+use binnacle_schedule::calls::{FileErrors, MAX_LISTED, PortCall, csv, escape_formula, ics};
 use binnacle_schedule::time::Instant;
 use std::io::{BufReader, Read};
 
@@ -217,9 +217,9 @@ fn an_exported_cell_is_no_formula_and_reads_back() {
     assert!(written.contains("\n'=1+1,'@v,"), "{written}");
     assert_eq!(csv_calls(std::str::from_utf8(&out).unwrap()), calls);
     for harmless in ["", "c1", "'c1", "a=b"] {
-        assert_eq!(csv::escape_formula(harmless), harmless);
+        assert_eq!(escape_formula(harmless), harmless);
     }
-    assert_eq!(csv::escape_formula("'=1"), "''=1");
+    assert_eq!(escape_formula("'=1"), "''=1");
 }
 
 /// Madrid as calendars define it.

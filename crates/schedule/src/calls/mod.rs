@@ -6,10 +6,12 @@
 
 mod berth;
 pub mod csv;
+mod csv_rows;
 mod file_error;
 pub mod ics;
 
 pub use berth::{BerthHeading, HeadingSource, Observed, berth_heading};
+pub use csv_rows::{CsvRow, CsvRows, escape_formula};
 pub use file_error::{FileError, FileErrors, MAX_LISTED};
 
 use crate::ports::PortCode;

@@ -30,8 +30,15 @@ pub(super) struct Job<'a> {
 }
 
 impl Job<'_> {
+    /// Returns the first day on which one of the needs is due; of needs whose interval may end on any
+    /// day, the one to arrange it by.
     pub(super) fn due(&self) -> NaiveDate {
-        self.needs[0].due
+        let known = self
+            .needs
+            .iter()
+            .filter(|need| need.urgency != Urgency::Unknown);
+        let first = known.map(|need| need.due).min();
+        first.unwrap_or(self.needs[0].due)
     }
 
     pub(super) fn urgency(&self) -> Urgency {
@@ -45,7 +52,10 @@ impl Job<'_> {
     /// Returns true if the job may be done on any day: it is late already, however soon it is
     /// done, or the day on which its interval ends is unknown.
     pub(super) fn may_be_any_day(&self, today: NaiveDate) -> bool {
-        self.due() < today || matches!(self.urgency(), Urgency::Overdue | Urgency::Unknown)
+        let is_unknown = |need: &DueNeed| need.urgency == Urgency::Unknown;
+        self.due() < today
+            || self.urgency() == Urgency::Overdue
+            || self.needs.iter().all(is_unknown)
     }
 
     pub(super) fn ids(&self) -> Vec<String> {
@@ -92,7 +102,9 @@ pub(super) fn jobs(checked: &Checked) -> (Vec<Job<'_>>, Vec<DueNeed>) {
     let mut later = Vec::new();
     let mut of_vessel: BTreeMap<&str, Vec<DueNeed>> = BTreeMap::new();
     for (vessel, need) in needs(input, today) {
-        if need.due > ends && confirmed(&need.id).is_none() {
+        // The day of an unknown need moves with today: it would never come into the horizon.
+        let is_later = need.due > ends && need.urgency != Urgency::Unknown;
+        if is_later && confirmed(&need.id).is_none() {
             later.push(need);
         } else {
             of_vessel.entry(vessel).or_default().push(need);

@@ -15,6 +15,7 @@
 use crate::zone::Zone;
 use binnacle_compass::position::Position;
 use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -84,22 +85,43 @@ pub fn describe_unknown(code: PortCode) -> String {
     }
 }
 
-/// Finds the ports that words name: by a code, alone or behind the name in brackets, or by the name.
-/// Several may share a name.
+/// Finds the ports that words name: by a code, by a name, or by a name with its code in brackets.
+/// Several may share a name, and a name may be another port's code.
 pub fn named(words: &str) -> Vec<&'static Port> {
-    let words = words.trim();
-    let bracketed = words
-        .rsplit_once('(')
-        .and_then(|(_, code)| code.strip_suffix(')'));
     let by_code = |text: &str| PortCode::parse(text).ok().and_then(find);
-    if let Some(port) = bracketed.and_then(by_code).or_else(|| by_code(words)) {
-        return vec![port];
+    if let Some((name, code)) = words.trim().rsplit_once('(')
+        && let Some(port) = code.strip_suffix(')').and_then(by_code)
+    {
+        // Another port's name contradicts the code.
+        let is_called = called(name).iter().any(|named| named.code == port.code);
+        return Vec::from_iter(is_called.then_some(port));
     }
-    let is_name = |name: &str| name.eq_ignore_ascii_case(words);
-    all()
-        .iter()
-        .filter(|port| is_name(port.name) || is_name(port.plain_name))
-        .collect()
+    let of_name = called(words).iter().copied();
+    let mut found: Vec<&Port> = by_code(words).into_iter().chain(of_name).collect();
+    found.sort_by_key(|port| port.code);
+    found.dedup_by_key(|port| port.code);
+    found
+}
+
+/// Returns the ports of exactly this name, with or without its accents, in either case.
+pub(crate) fn called(name: &str) -> &'static [&'static Port] {
+    // A file has thousands of places, and the table thousands of ports.
+    static CALLED: OnceLock<BTreeMap<String, Vec<&'static Port>>> = OnceLock::new();
+    let called = CALLED.get_or_init(|| {
+        let mut called: BTreeMap<String, Vec<&'static Port>> = BTreeMap::new();
+        for port in all() {
+            let names: BTreeSet<String> = [port.name, port.plain_name]
+                .map(str::to_lowercase)
+                .into_iter()
+                .collect();
+            for name in names {
+                called.entry(name).or_default().push(port);
+            }
+        }
+        called
+    });
+    let found = called.get(&name.trim().to_lowercase());
+    found.map_or(&[], Vec::as_slice)
 }
 
 /// Finds ports whose code or name begins with a text, then those whose name
@@ -221,6 +243,10 @@ mod tests {
         // There is one in the state of New York too.
         assert_eq!(codes("Rotterdam"), ["NLRTM", "USRAJ"]);
         assert!(codes("Rotterdm").is_empty());
+        assert_eq!(codes("MÁLAGA"), ["ESAGP"]);
+        // One port's name is another's code.
+        assert_eq!(codes("Trana"), ["NOTRN", "TRANA"]);
+        assert!(codes("Rotterdam (ESBIO)").is_empty());
     }
 
     #[test]

@@ -155,6 +155,7 @@ struct Received {
     responses((status = 200, body = Received), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 404, description = "No vessel of yours has the IMO number", body = Problem),
+              (status = 409, description = "The quota of port calls is used up", body = Problem),
               (status = 422, description = "Also when the call overlaps another", body = Problem)))]
 async fn receive_timestamp(
     State(app): State<App>,

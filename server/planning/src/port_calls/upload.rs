@@ -290,9 +290,6 @@ pub(super) async fn store_file(
         uploaded.amended += amended.len();
         uploaded.unchanged += unchanged;
         uploaded.withdrawn += withdrawn.len();
-        if !new.is_empty() {
-            QUOTA.must_have_room(&mut tx, writer.operator, now).await?;
-        }
         for (id, call) in &new {
             store::insert(&mut tx, vessel, *id, call, source, &author).await?;
         }
@@ -310,6 +307,9 @@ pub(super) async fn store_file(
         pending.extend(attach_new_calls(&mut tx, vessel, &current, &author.name, now).await?);
     }
     errors.into_result(()).map_err(refuse_file)?;
+    if uploaded.created > 0 {
+        QUOTA.must_hold(&mut tx, writer.operator, now).await?;
+    }
     commit(app, tx, &changed, pending, now).await?;
     Ok(uploaded)
 }

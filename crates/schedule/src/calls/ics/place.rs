@@ -9,8 +9,6 @@
 use super::line::Line;
 use crate::calls::FileError;
 use crate::ports::{self, Port, PortCode};
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::OnceLock;
 
 /// Separators between the parts of a place.
 const SEPARATORS: [char; 12] = [',', ';', '(', ')', '[', ']', '/', '|', ':', '\n', '–', '—'];
@@ -38,9 +36,9 @@ pub(super) fn find_port<'a>(
 }
 
 fn port_of_location(text: &str, summary: &str) -> Result<PortCode, String> {
-    let mut named = ports_named(text.split(',').next().unwrap_or_default());
+    let mut named = ports::called(text.split(',').next().unwrap_or_default());
     if named.is_empty() {
-        named = ports_named(text.split(SEPARATORS).next().unwrap_or_default());
+        named = ports::called(text.split(SEPARATORS).next().unwrap_or_default());
     }
     let lone = split_parts(text).filter_map(parse_lone_code);
     let codes = sorted_distinct(lone.chain(codes_beside_names(text)));
@@ -146,27 +144,6 @@ fn codes_beside_names(text: &str) -> impl Iterator<Item = PortCode> {
         let mut names = port.iter().flat_map(|port| plain_names(port));
         names.any(|name| whole.contains(&format!(" {name} ")))
     })
-}
-
-/// Returns the ports of exactly this name.
-fn ports_named(name: &str) -> &'static [&'static Port] {
-    // A calendar has thousands of places, and the table thousands of ports.
-    static NAMED: OnceLock<BTreeMap<String, Vec<&'static Port>>> = OnceLock::new();
-    let named = NAMED.get_or_init(|| {
-        let mut named: BTreeMap<String, Vec<&'static Port>> = BTreeMap::new();
-        for port in ports::all() {
-            let names: BTreeSet<String> = [port.name, port.plain_name]
-                .map(str::to_lowercase)
-                .into_iter()
-                .collect();
-            for name in names {
-                named.entry(name).or_default().push(port);
-            }
-        }
-        named
-    });
-    let found = named.get(&name.trim().to_lowercase());
-    found.map_or(&[], Vec::as_slice)
 }
 
 /// Returns true if the port of a code shares a name with another: Georgetown is also
