@@ -195,6 +195,10 @@ def interpolated(card, compass_deg):
     part = (compass_deg % 360 - 15 * low) / 15
     return card[low] + part * (card[(low + 1) % 24] - card[low])
 
+
+# States of work orders that the demo shows.
+STATES = ["accepted", "adjusted", "adjusting", "cancelled", "closed", "closed_unverified", "declined",
+          "failed", "measured", "offered", "on_board", "planned", "proposed", "verified"]
 # A compass that passed every check alongside.
 SOUND = {check: "sound" for check in ["bubble", "pivot", "gimbals", "lubber_line"]}
 
@@ -379,7 +383,7 @@ class Mission:
 
     def order_at_sea(self):
         """Orders of the simulated ships, at their next port calls."""
-        south, north, home = list(FIRMS)[2], list(FIRMS)[1], list(FIRMS)[0]
+        home, north, south = FIRMS
         self.order_at_next_call("Baía de Santos", home)
         accepted = self.order_at_next_call("Indian Ocean Pearl", south)
         self.accept(south, accepted, "D. Perera")
@@ -410,6 +414,8 @@ def main():
     mission.adjust_coasters(earth)
     mission.order_at_sea()
     states = sorted({one["state"] for one in mission.office.get("/work-orders?limit=200")["items"]})
+    if missing := sorted(set(STATES) - set(states)):
+        sys.exit(f"demo: no order is in these states: {', '.join(missing)}")
     print(f"  Orders are in these states: {', '.join(states)}.")
 
 
