@@ -1,8 +1,9 @@
 -- The first run of a server, firms that operators found, and IMO numbers that are one vessel's.
 
--- One-time codes with which an empty server's first operator is made.
+-- One-time code with which an empty server's first operator is made: one row at most.
 CREATE TABLE first_run_codes (
-    code_hash BYTEA NOT NULL PRIMARY KEY, -- SHA-256
+    id BIGINT NOT NULL PRIMARY KEY CHECK (id = 1),
+    code_hash BYTEA NOT NULL, -- SHA-256
     expires_at BIGINT NOT NULL
 );
 

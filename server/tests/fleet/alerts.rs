@@ -383,10 +383,15 @@ async fn put(person: &Person, path: &str, body: Value) -> ApiResponse {
 async fn several_alerts_are_acknowledged_together_or_not_at_all(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
-    let nao = ship_with_model(&server, &ada).await;
-    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
-    let alert = list(&ada, "").await.remove(0);
-    let all = json!({ "alerts": [alert["id"], alert["id"]], "note": "Master informed" });
+    for _ in 0..2 {
+        let ship = ship_with_model(&server, &ada).await;
+        set_alert_limits(&server, &ada, &ship, json!({ "deviation_deg": 2.5 })).await;
+    }
+    let raised = list(&ada, "").await;
+    assert_eq!(raised.len(), 2);
+    let alert = &raised[0];
+    let ids: Vec<&Value> = raised.iter().map(|alert| &alert["id"]).collect();
+    let all = json!({ "alerts": [ids[0], ids[1], ids[0]], "note": "Master informed" });
     assert_eq!(
         eve.post("/alerts/acknowledge", &all).await.problem(),
         "not-found"
@@ -402,7 +407,7 @@ async fn several_alerts_are_acknowledged_together_or_not_at_all(server: TestServ
         ada.post("/alerts/acknowledge", &none).await.problem(),
         "invalid"
     );
-    for expected in [1, 0] {
+    for expected in [2, 0] {
         let done = ada.post("/alerts/acknowledge", &all).await.good();
         assert_eq!(done["acknowledged"], expected);
     }
@@ -438,6 +443,9 @@ async fn an_alert_is_assigned_to_a_colleague_and_commented(server: TestServer) {
     ada.post(&comments, &json!({ "text": "Azimuth tonight." }))
         .await
         .good();
+    let [long, too_long] = [1000, 1001].map(|length| json!({ "text": "x".repeat(length) }));
+    ada.post(&comments, &long).await.good();
+    assert_eq!(ada.post(&comments, &too_long).await.problem(), "invalid");
     let listed = ada.get(&comments).await.good();
     assert_eq!(listed["items"][0]["text"], "Azimuth tonight.");
     assert_eq!(listed["items"][0]["by"], "ada@example.com");
@@ -474,5 +482,12 @@ async fn a_snoozed_alert_leaves_the_fleets_rows_until_its_time_or_until_it_gets_
     set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let worse = list(&ada, "").await.remove(0);
     assert_eq!(worse["snoozed_until"], Value::Null, "{worse}");
+    assert_eq!(shown().await["id"], alert["id"]);
+    let now: Timestamp = server.app.clock.now();
+    let later = now.plus_seconds(3600.0);
+    put(&ada, &snooze, json!({ "until": later })).await.good();
+    assert_eq!(shown().await, Value::Null);
+    server.advance(3601.0);
+    assert_eq!(shown().await["id"], alert["id"]);
     server.finish().await;
 }

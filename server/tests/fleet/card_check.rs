@@ -103,6 +103,11 @@ async fn a_check_tells_neither_place_nor_operator(server: TestServer) {
         "largest_difference_deg",
     ];
     assert!(names.iter().all(|name| known.contains(name)), "{names:?}");
+    let operator = ada.get("/me").await.good()["operator_name"].to_string();
+    assert!(
+        operator.len() > 4 && !found.to_string().contains(&operator),
+        "{found}"
+    );
     for place in ["lat", "lon", "h_nt"] {
         let value = card["place"][place].to_string();
         assert!(!found.to_string().contains(&value), "{place} {found}");

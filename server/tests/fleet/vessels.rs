@@ -261,6 +261,10 @@ async fn a_file_of_vessels_is_entered_whole_or_not_at_all(server: TestServer) {
     ] {
         assert!(detail.contains(message), "{detail}");
     }
+    // As spreadsheets write it, with a blank line.
+    let refused = send("name,imo_number\r\n\r\nNao,9074729\r\nHulk,9074728\r\n").await;
+    let detail = refused.json()["detail"].as_str().unwrap().to_owned();
+    assert!(detail.contains("line 4: imo_number"), "{detail}");
     let good = send("\u{feff}name;flag;imo_number\r\nNao Victoria;ES;9074729\r\nHulk;;\r\n").await;
     assert_eq!((good.status, good.good()), (201, json!({ "created": 2 })));
     let listed = ada.get("/vessels").await.good();
@@ -275,6 +279,7 @@ async fn a_file_of_vessels_is_entered_whole_or_not_at_all(server: TestServer) {
         ("imo\n1\n", "line 1: imo: is not a column"),
         ("flag\nES\n", "line 1: name: the column is missing"),
         ("name\n", "the file names no vessel"),
+        ("name,flag,flag\nNao,ES,ES\n", "line 1: flag: appears twice"),
     ] {
         let refused = send(text).await;
         let detail = refused.json()["detail"].as_str().unwrap().to_owned();

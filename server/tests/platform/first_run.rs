@@ -134,6 +134,11 @@ async fn a_platform_admin_invites_a_companys_first_user(server: TestServer) {
     send(&server, "/invitations/accept", &accepted).await.good();
     let signed_in = try_sign_in(&server, "juan@elcano.example", "seven gulls over the quay").await;
     assert_eq!(signed_in.good()["operator_name"], "Elcano");
+    // From then on those who run the server let nobody into the fleet.
+    let other = json!({ "name": "Root", "email": "root@server.example" });
+    let refused = root.post(&users, &other).await;
+    assert_eq!(refused.problem(), "wrong-state");
+    assert!(refused.text.contains("has an admin"), "{refused:?}");
     server.finish().await;
 }
 

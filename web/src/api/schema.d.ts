@@ -229,8 +229,8 @@ export interface paths {
         };
         get?: never;
         /**
-         * Postpone an alert
-         * @description Until then it is marked as postponed. It comes back when it gets worse.
+         * Snooze an alert
+         * @description Until then it is not among those to see to. It comes back when it gets worse.
          */
         put: operations["snooze_alert"];
         post?: never;
@@ -1921,7 +1921,7 @@ export interface paths {
          * Enter vessels by a CSV file
          * @description The first line names the columns: `name`, and optionally `imo_number`, `call_sign`, `flag` and
          *     `sister_class`, separated by commas or semicolons. Each vessel comes with its standard compass.
-         *     The file is stored whole or not at all. At most 2,000 vessels.
+         *     The file is stored whole or not at all. At most 2,000 vessels and 1 MiB.
          */
         post: operations["upload_vessels"];
         delete?: never;
@@ -10812,7 +10812,7 @@ export interface components {
             items: components["schemas"]["PublishedKey"][];
         };
         /**
-         * @description Postponement of an alert.
+         * @description Snooze of an alert.
          * @example {
          *       "until": "2026-12-01T08:00:00Z"
          *     }
@@ -18933,6 +18933,15 @@ export interface operations {
             };
             /** @description No vessel of yours has the IMO number */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The quota of port calls is used up */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -86,7 +86,7 @@ pub struct Alert {
     /// Name of that user.
     #[schema(required)]
     pub assigned_name: Option<String>,
-    /// Time until which it was postponed.
+    /// Time until which it is snoozed.
     #[schema(required)]
     pub snoozed_until: Option<Time>,
     /// Time at which it was cleared.

@@ -1,6 +1,6 @@
-//! Handling of alerts by several people: assignment, comments, postponement, and several at once.
+//! Handling of alerts by several people: assignment, comments, snoozing, and several at once.
 //!
-//! Invariants: none of it changes what the alert says or when it is over. A postponed alert is
+//! Invariants: none of it changes what the alert says or when it is over. A snoozed alert is
 //! listed again at its time, or when it gets worse.
 
 use super::alert::Alert;
@@ -14,7 +14,7 @@ use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Valid, optional_text, text};
+use binnacle_platform::http::{Id, Json, Valid, optional_text, text_up_to};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{AlertId, OperatorId, UserId};
 use binnacle_platform::session;
@@ -27,7 +27,9 @@ use uuid::Uuid;
 
 /// Maximum number of alerts of one request.
 const MAX_ALERTS: usize = 200;
-/// Longest postponement, seconds.
+/// Maximum length of a comment, characters.
+const MAX_COMMENT_CHARS: usize = 1000;
+/// Longest time for which an alert is snoozed, seconds.
 const MAX_SNOOZE_S: f64 = 90.0 * 86_400.0;
 
 pub(super) fn router<S>() -> OpenApiRouter<S>
@@ -75,7 +77,7 @@ struct Assignment {
     user_id: Option<UserId>,
 }
 
-/// Postponement of an alert.
+/// Snooze of an alert.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({ "until": "2026-12-01T08:00:00Z" }))]
@@ -198,12 +200,12 @@ async fn assign_alert(
         id,
         assignment.user_id
     )?;
-    show(&app, tx, &alert).await
+    commit_and_publish(&app, tx, &alert).await.map(Json)
 }
 
-/// Postpone an alert
+/// Snooze an alert
 ///
-/// Until then it is marked as postponed. It comes back when it gets worse.
+/// Until then it is not among those to see to. It comes back when it gets worse.
 #[utoipa::path(put, path = "/alerts/{id}/snooze", tag = "alerts",
     params(("id" = AlertId, Path)), request_body = Snooze,
     responses((status = 200, body = Alert), (status = 401, body = Problem),
@@ -221,7 +223,7 @@ async fn snooze_alert(
     if ahead_s.is_some_and(|ahead_s| !(0.0..=MAX_SNOOZE_S).contains(&ahead_s)) {
         return Err(Error::Invalid {
             field: "until",
-            detail: "is over, or more than 90 days ahead".to_owned(),
+            detail: "must be in the future, at most 90 days ahead".to_owned(),
         });
     }
     let alert = store::must_find(&app.db, writer.operator, id).await?;
@@ -233,7 +235,7 @@ async fn snooze_alert(
         id,
         snooze.until
     )?;
-    show(&app, tx, &alert).await
+    commit_and_publish(&app, tx, &alert).await.map(Json)
 }
 
 /// List the comments on an alert
@@ -266,7 +268,7 @@ async fn comment_alert(
     Valid(new): Valid<NewComment>,
 ) -> Result<(StatusCode, Json<CommentList>)> {
     let request_hash = idempotency::request_hash(&format!("comment on {id}"), &new)?;
-    let words = text("text", &new.text)?;
+    let words = text_up_to("text", &new.text, MAX_COMMENT_CHARS)?;
     let alert = store::must_find(&app.db, writer.operator, id).await?;
     let now: Time = app.clock.now().into();
     let comment = Uuid::now_v7();
@@ -287,14 +289,14 @@ async fn comment_alert(
             by,
             words
         )?;
-        let Json(_) = show(&app, tx, &alert).await?;
+        commit_and_publish(&app, tx, &alert).await?;
     }
     let items = comments(&app.db, &alert).await?;
     Ok((StatusCode::CREATED, Json(CommentList { items })))
 }
 
-/// Commits a change of how an alert is handled, and tells dashboards of it.
-async fn show(app: &App, mut tx: Tx, alert: &Alert) -> Result<Json<Alert>> {
+/// Commits a change of how an alert is handled, notifies dashboards, and returns the alert.
+async fn commit_and_publish(app: &App, mut tx: Tx, alert: &Alert) -> Result<Alert> {
     let pending = [PendingChange {
         alert: alert.id,
         kind: None,
@@ -307,7 +309,7 @@ async fn show(app: &App, mut tx: Tx, alert: &Alert) -> Result<Json<Alert>> {
     if let Some(event) = event {
         app.publish(event);
     }
-    Ok(Json(changed))
+    Ok(changed)
 }
 
 async fn comments(db: &Db, alert: &Alert) -> DbResult<Vec<Comment>> {

@@ -6,7 +6,7 @@ use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::db::{execute, rows};
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Json, Valid, text};
+use binnacle_platform::http::{Json, Valid, is_control, text};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
@@ -86,10 +86,25 @@ async fn put_views(
                 detail: format!("is longer than {MAX_SEARCH_CHARS} characters"),
             });
         }
-        views.insert(text("name", &view.name)?, view.search);
+        if view.search.chars().any(is_control) {
+            return Err(Error::Invalid {
+                field: "search",
+                detail: "has control characters".to_owned(),
+            });
+        }
+        let name = text("name", &view.name)?;
+        if views.contains_key(&name) {
+            return Err(Error::Invalid {
+                field: "name",
+                detail: format!("{name} stands twice"),
+            });
+        }
+        views.insert(name, view.search);
     }
     let user = caller.user.user_id;
     let mut tx = request.begin().await?;
+    // Another browser of the same user waits.
+    execute!(&mut tx, "UPDATE users SET name = name WHERE id = $1", user)?;
     execute!(&mut tx, "DELETE FROM fleet_views WHERE user_id = $1", user)?;
     for (name, search) in views {
         execute!(

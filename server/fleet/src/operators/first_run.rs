@@ -8,7 +8,7 @@ use super::store;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_platform::app::App;
-use binnacle_platform::audit::{Actor, RequestContext};
+use binnacle_platform::audit::{Actor, Refusal, RequestContext};
 use binnacle_platform::db::{Db, Tx, execute, row};
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Json, Valid, text};
@@ -102,10 +102,15 @@ async fn begin(
     let name = text("name", &new.name)?;
     let email = users::checked_email(&new.email)?;
     password::check("password", &new.password, &[&email, &name, &operator_name])?;
-    let hash = app.hashing.acquire().await?.hash(new.password).await?;
     let now: Time = app.clock.now().into();
+    if !is_code(&app.db, &new.code).await? {
+        return Err(refused(&request));
+    }
+    let hash = app.hashing.acquire().await?.hash(new.password).await?;
     let mut tx = request.begin().await?;
-    use_code(&mut tx, &new.code, now).await?;
+    if !use_code(&mut tx, &new.code, now).await? {
+        return Err(refused(&request));
+    }
     let operator = OperatorId::new();
     store::insert(&mut tx, operator, &operator_name, now).await?;
     let tenant = Tenant::Operator(operator);
@@ -119,7 +124,6 @@ async fn begin(
         now,
     );
     let id = created.await?;
-    // Two requests with two codes: the second one sees the first one's user.
     if has_others(&mut tx, id).await? {
         return Err(has_users());
     }
@@ -143,10 +147,11 @@ pub async fn make_code(
     let code = secret::new_code();
     let expires_at = Time(now.0.plus_seconds(VALID_FOR_S));
     let mut tx = request.begin().await?;
-    execute!(&mut tx, "DELETE FROM first_run_codes")?;
+    // The table has one row: of two codes that are printed at once the later one is valid.
     execute!(
         &mut tx,
-        "INSERT INTO first_run_codes (code_hash, expires_at) VALUES ($1, $2)",
+        "INSERT INTO first_run_codes (id, code_hash, expires_at) VALUES (1, $1, $2)
+         ON CONFLICT (id) DO UPDATE SET code_hash = $1, expires_at = $2",
         secret::hash(&secret::normal_code(&code)),
         expires_at
     )?;
@@ -158,8 +163,25 @@ fn has_users() -> Error {
     Error::WrongState("this server has users: ask one of them for an invitation".to_owned())
 }
 
-/// Uses a code up; its deletion makes other requests with the same code wait.
-async fn use_code(tx: &mut Tx, code: &str, now: Time) -> Result<()> {
+fn refused(request: &RequestContext) -> Error {
+    request.refuse(Refusal::InvalidCode, None);
+    Error::NotFound("code")
+}
+
+/// Tells whether there is such a code, before anything costly is done for it.
+async fn is_code(db: &Db, code: &str) -> Result<bool> {
+    let found = row!(
+        db,
+        (Time,),
+        "SELECT expires_at FROM first_run_codes WHERE code_hash = $1 ORDER BY code_hash",
+        secret::hash(&secret::normal_code(code))
+    )?;
+    Ok(found.is_some())
+}
+
+/// Uses a code up; its deletion makes other requests with the same code wait. Returns false where
+/// there is none.
+async fn use_code(tx: &mut Tx, code: &str, now: Time) -> Result<bool> {
     let used = row!(
         in tx,
         (Time,),
@@ -167,11 +189,11 @@ async fn use_code(tx: &mut Tx, code: &str, now: Time) -> Result<()> {
         secret::hash(&secret::normal_code(code))
     )?;
     match used {
-        None => Err(Error::NotFound("code")),
+        None => Ok(false),
         Some((expires_at,)) if expires_at <= now => {
             Err(Error::Gone("this code has expired; print another"))
         }
-        Some(_) => Ok(()),
+        Some(_) => Ok(true),
     }
 }
 

@@ -19,7 +19,7 @@ pub(super) struct FleetRecords {
     pub(super) models: Vec<StoredModel>,
     /// Tracks, in the same order.
     pub(super) tracks: Vec<StoredTrack>,
-    /// Alerts that are neither cleared nor postponed.
+    /// Alerts that are neither cleared nor snoozed.
     pub(super) alerts: Vec<WorstAlert>,
     /// Each vessel's first port call that is not over.
     pub(super) calls: Vec<NextPortCall>,
@@ -50,7 +50,7 @@ pub(super) struct StoredTrack {
     pub(super) track: Track,
 }
 
-/// An alert that is neither cleared nor postponed.
+/// An alert that is neither cleared nor snoozed.
 #[derive(sqlx::FromRow)]
 pub(super) struct WorstAlert {
     pub(super) id: AlertId,

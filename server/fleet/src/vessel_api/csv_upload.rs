@@ -7,7 +7,7 @@
 use super::enter;
 use crate::vessels::{self, NewVessel};
 use axum::body::Bytes;
-use axum::extract::{FromRef, State};
+use axum::extract::{DefaultBodyLimit, FromRef, State};
 use axum::http::StatusCode;
 use binnacle_platform::access::Writer;
 use binnacle_platform::app::App;
@@ -15,15 +15,16 @@ use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{FileContent, Json};
 use binnacle_platform::ids::VesselId;
-use binnacle_schedule::calls::{FileError, FileErrors};
+use binnacle_schedule::calls::{CsvRows, FileError, FileErrors};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// Maximum number of vessels of a file.
+/// Maximum number of vessels of a file, and its length, bytes.
 const MAX_VESSELS: usize = 2_000;
+const MAX_BYTES: usize = 1 << 20;
 const COLUMNS: [&str; 5] = ["name", "imo_number", "call_sign", "flag", "sister_class"];
 
 pub(super) fn router<S>() -> OpenApiRouter<S>
@@ -31,7 +32,9 @@ where
     App: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
-    OpenApiRouter::new().routes(routes!(upload_vessels))
+    OpenApiRouter::new()
+        .routes(routes!(upload_vessels))
+        .layer(DefaultBodyLimit::max(MAX_BYTES))
 }
 
 /// Result of an upload of vessels.
@@ -46,7 +49,7 @@ struct Uploaded {
 ///
 /// The first line names the columns: `name`, and optionally `imo_number`, `call_sign`, `flag` and
 /// `sister_class`, separated by commas or semicolons. Each vessel comes with its standard compass.
-/// The file is stored whole or not at all. At most 2,000 vessels.
+/// The file is stored whole or not at all. At most 2,000 vessels and 1 MiB.
 #[utoipa::path(post, path = "/vessels.csv", tag = "fleet",
     request_body(content = inline(FileContent), content_type = "text/csv",
         example = "name,imo_number,call_sign,flag\nNao Victoria,9074729,EAVN,ES\n"),
@@ -90,6 +93,7 @@ async fn upload_vessels(
     })?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
+    vessels::lock_entries(&mut tx, writer.operator).await?;
     for (_, vessel) in &rows {
         enter(&mut tx, writer.operator, VesselId::new(), vessel, now).await?;
     }
@@ -108,48 +112,29 @@ fn key(name: &str) -> String {
 /// # Errors
 /// [`FileError`] where reading cannot go on.
 fn read(bytes: &[u8]) -> std::result::Result<(Vec<(usize, NewVessel)>, FileErrors), FileError> {
-    let text = std::str::from_utf8(bytes)
-        .map_err(|_| FileError::new(1, "row", "the file is not UTF-8 text"))?;
-    let text = text.trim_start_matches('\u{feff}');
-    let first = text.lines().next().unwrap_or_default();
-    let separator = if first.contains(';') { b';' } else { b',' };
-    let mut file = csv::ReaderBuilder::new()
-        .delimiter(separator)
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
-    let unreadable = |error: csv::Error| {
-        let line = error.position().map_or(1, csv::Position::line) as usize;
-        FileError::new(line, "row", error.to_string())
-    };
-    let header = file.headers().map_err(unreadable)?.clone();
-    for name in &header {
-        if !COLUMNS.contains(&name) {
-            let what = format!("is not a column; known columns are {}", COLUMNS.join(", "));
-            return Err(FileError::new(1, name, what));
-        }
-    }
-    if !header.iter().any(|name| name == "name") {
-        return Err(FileError::new(1, "name", "the column is missing"));
-    }
     let (mut rows, mut errors) = (Vec::new(), FileErrors::default());
-    for record in file.records() {
-        let record = record.map_err(unreadable)?;
-        let line = record.position().map_or(1, csv::Position::line) as usize;
+    let mut file = CsvRows::open(bytes, &COLUMNS, &["name"])?;
+    while let Some(row) = file.next_row()? {
+        let row = match row {
+            Ok(row) => row,
+            Err(fault) => {
+                errors.push(fault);
+                continue;
+            }
+        };
+        let line = row.line;
         if rows.len() == MAX_VESSELS {
             let what = format!("more than {MAX_VESSELS} vessels");
             return Err(FileError::new(line, "row", what));
         }
-        let cell = |name: &str| {
-            let at = header.iter().position(|column| column == name)?;
-            record.get(at).filter(|text| !text.is_empty())
-        };
+        let cell = |name: &str| row.cell(name).map(str::to_owned);
         let vessel = NewVessel {
-            name: cell("name").unwrap_or_default().to_owned(),
-            imo_number: cell("imo_number").map(str::to_owned),
-            call_sign: cell("call_sign").map(str::to_owned),
-            flag: cell("flag").map(str::to_owned),
+            name: cell("name").unwrap_or_default(),
+            imo_number: cell("imo_number"),
+            call_sign: cell("call_sign"),
+            flag: cell("flag"),
             degaussing: None,
-            sister_class: cell("sister_class").map(str::to_owned),
+            sister_class: cell("sister_class"),
         };
         match vessel.checked() {
             Ok(vessel) => rows.push((line, vessel)),

@@ -163,6 +163,7 @@ async fn create_vessel(
         .await?;
     if id == new_id.0 {
         request.concerns_vessel(new_id, None);
+        vessels::lock_entries(&mut tx, writer.operator).await?;
         enter(&mut tx, writer.operator, new_id, &new, now).await?;
     }
     tx.commit().await?;
@@ -170,7 +171,7 @@ async fn create_vessel(
     Ok((StatusCode::CREATED, vessel))
 }
 
-/// Stores a vessel with its standard compass.
+/// Stores a vessel with its standard compass, after [`vessels::lock_entries`].
 async fn enter(
     tx: &mut Tx,
     operator: OperatorId,
@@ -228,6 +229,7 @@ async fn amend_vessel(
     let amended = amendment.applied_to(vessel)?;
     if amended.imo_number != former {
         let number = amended.imo_number.as_deref();
+        vessels::lock_entries(&mut tx, writer.operator).await?;
         vessels::require_free_imo(&mut tx, writer.operator, number, id).await?;
     }
     vessels::update(&mut tx, id, &amended).await?;

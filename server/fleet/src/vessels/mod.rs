@@ -14,7 +14,9 @@ pub use store::{
     VesselNames, VesselRow, find_operator, find_owner, find_row, is_in_service, must_be_in_fleet,
     names,
 };
-pub(crate) use store::{insert, list, lock, require_free_imo, set_out_of_service, update};
+pub(crate) use store::{
+    insert, list, lock, lock_entries, require_free_imo, set_out_of_service, update,
+};
 
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::http::{optional_text, text};

@@ -150,8 +150,17 @@ pub async fn names(db: &Db, operator: OperatorId) -> Result<Vec<VesselNames>> {
     )
 }
 
-/// Refuses an IMO number that another vessel of the operator has. Other entries of vessels wait
-/// for the transaction.
+/// Makes other entries and amendments of the operator's vessels wait for the transaction.
+pub(crate) async fn lock_entries(tx: &mut Tx, operator: OperatorId) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE operators SET name = name WHERE id = $1",
+        operator
+    )
+    .map(drop)
+}
+
+/// Refuses an IMO number that another vessel of the operator has, after [`lock_entries`].
 ///
 /// # Errors
 /// [`Error::Invalid`] with the name of the other vessel.
@@ -164,11 +173,6 @@ pub(crate) async fn require_free_imo(
     let Some(number) = imo_number else {
         return Ok(());
     };
-    execute!(
-        &mut *tx,
-        "UPDATE operators SET name = name WHERE id = $1",
-        operator
-    )?;
     let other = row!(
         in tx,
         (String,),

@@ -68,11 +68,19 @@ impl<S: Send + Sync, T: DeserializeOwned + Send> FromRequestParts<S> for Id<T> {
 /// # Errors
 /// Fails when it is empty, too long or not on one line.
 pub fn text(field: &'static str, value: &str) -> Result<String> {
+    text_up_to(field, value, MAX_TEXT)
+}
+
+/// Returns a text of at most `most` characters, trimmed.
+///
+/// # Errors
+/// Fails as [`text`] does.
+pub fn text_up_to(field: &'static str, value: &str, most: usize) -> Result<String> {
     let value = value.trim();
     let detail = if value.is_empty() {
         "is empty"
-    } else if value.chars().count() > MAX_TEXT {
-        "is longer than 200 characters"
+    } else if value.chars().count() > most {
+        &format!("is longer than {most} characters")
     } else if value.chars().any(is_control) {
         "has control characters, or characters that change the direction of writing"
     } else if hides_something(value) {

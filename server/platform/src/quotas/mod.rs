@@ -92,6 +92,16 @@ impl Quota {
         self.must_be_above(tx, tenant, used).await
     }
 
+    /// Refuses what was made in this transaction if a tenant has more than it may have.
+    ///
+    /// # Errors
+    /// A problem of the type `quota-exceeded` with the limit.
+    pub async fn must_hold(&self, tx: &mut Tx, tenant: impl Into<Tenant>, now: Time) -> Result<()> {
+        let tenant = tenant.into();
+        let used = (self.count)(tx, tenant, now).await?;
+        self.must_be_above(tx, tenant, used - 1).await
+    }
+
     /// Refuses to make one more beside those that the caller has counted.
     ///
     /// # Errors
@@ -107,8 +117,7 @@ impl Quota {
             kind: "quota-exceeded",
             title: "Quota used up",
             detail: format!(
-                "there are {most} {things} already, which is the limit; remove some, or ask who runs \
-                 this server for more"
+                "{most} {things} are the limit; remove some, or ask who runs this server for more"
             ),
             extra: Map::from_iter([("quota".to_owned(), self.name.into())]),
         }

@@ -154,10 +154,12 @@ pub struct NewCompanyUser {
     pub name: String,
 }
 
-/// Invites a user of a company, who sets a password with the invitation.
+/// Invites a user of a company, who sets a password with the invitation. An admin of an operator is
+/// invited this way only while it has none who can sign in: those who run the server have no fleet.
 ///
 /// # Errors
-/// [`Error::WrongState`] when the e-mail address has an account, [`Error::Invalid`] for a field.
+/// [`Error::WrongState`] when the e-mail address has an account, or the operator an admin;
+/// [`Error::Invalid`] for a field; the quota's problem.
 pub async fn invite(
     app: &App,
     request: &RequestContext,
@@ -170,6 +172,14 @@ pub async fn invite(
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
     request.concerns(tenant);
+    if let Some(operator) = tenant.operator() {
+        store::lock(&mut tx, operator).await?;
+        if store::has_admin(&mut tx, operator).await? {
+            let has = "the operator has an admin, who invites its other users";
+            return Err(Error::WrongState(has.to_owned()));
+        }
+    }
+    QUOTA.must_have_room(&mut tx, tenant, now).await?;
     let created = store::insert(&mut tx, tenant, &email, &name, role, now);
     let id = created.await?.ok_or_else(|| has_account(&email))?;
     let invitation = invitation::make(&mut tx, app, id).await?;

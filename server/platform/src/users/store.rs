@@ -90,7 +90,16 @@ pub(super) async fn lock(tx: &mut Tx, operator: OperatorId) -> db::Result<()> {
 
 /// Refuses to leave an operator without an admin who can sign in.
 pub(super) async fn must_have_admin(tx: &mut Tx, operator: OperatorId) -> Result<()> {
-    let left = row!(
+    if !has_admin(tx, operator).await? {
+        let last = "no admin with a password would be left";
+        return Err(Error::WrongState(last.to_owned()));
+    }
+    Ok(())
+}
+
+/// Tells whether an operator has an admin who can sign in with a password.
+pub(super) async fn has_admin(tx: &mut Tx, operator: OperatorId) -> db::Result<bool> {
+    let found = row!(
         in tx,
         (i64,),
         "SELECT COUNT(*) FROM users
@@ -98,11 +107,7 @@ pub(super) async fn must_have_admin(tx: &mut Tx, operator: OperatorId) -> Result
            AND password_hash <> ''",
         operator
     )?;
-    if left.is_none_or(|(admins,)| admins == 0) {
-        let last = "no admin with a password would be left";
-        return Err(Error::WrongState(last.to_owned()));
-    }
-    Ok(())
+    Ok(found.is_some_and(|(admins,)| admins > 0))
 }
 
 pub(super) async fn update(
