@@ -3,6 +3,7 @@
 
 use binnacle_fleet::{alerts, event_kinds as fleet_events};
 use binnacle_orders::dispatch;
+use binnacle_orders::firms;
 use binnacle_orders::{event_kinds as orders_events, work_orders};
 use binnacle_planning::notifications::{self, NoticeKinds};
 use binnacle_planning::{calendar, event_kinds as planning_events, port_calls, reports};
@@ -35,6 +36,7 @@ pub fn quotas() -> QuotaList {
         users::QUOTA,
         tokens::QUOTA,
         webhooks::QUOTA,
+        firms::QUOTA,
         calendar::QUOTA,
         port_calls::QUOTA,
         dispatch::MESSAGES_QUOTA,

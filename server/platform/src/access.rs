@@ -185,6 +185,18 @@ impl Caller {
         self.tenant().ok_or(Error::Forbidden(none))
     }
 
+    /// Refuses who may not change what an operator and a firm share, nor their receivers of messages.
+    ///
+    /// # Errors
+    /// Fails for a viewer.
+    pub fn must_change_shared(&self) -> Result<()> {
+        if !self.user.role.may_change_shared() {
+            let who = "only an admin or an adjuster may change this";
+            return Err(Error::Forbidden(who));
+        }
+        Ok(())
+    }
+
     fn must_be_admin(&self) -> Result<()> {
         if !self.user.role.may_change_fleet() {
             return Err(Error::Forbidden("only an admin may do this"));
@@ -404,11 +416,7 @@ where
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<PartyWriter> {
         let caller = Caller::from_request_parts(parts, state).await?;
         let tenant = caller.party()?;
-        if !caller.user.role.may_change_shared() {
-            return Err(Error::Forbidden(
-                "only an admin or an adjuster may change this",
-            ));
-        }
+        caller.must_change_shared()?;
         caller.must_not_only_read()?;
         Ok(PartyWriter {
             tenant,

@@ -8,6 +8,7 @@ use crate::identity_provider::Provider;
 use crate::outage::Disk;
 use crate::password::Hashing;
 use crate::request_rates::{AcceptedCredentials, RequestRates};
+use crate::users::Letters;
 use metrics_exporter_prometheus::PrometheusHandle;
 use std::sync::Arc;
 use tokio::sync::Notify;
@@ -40,6 +41,8 @@ pub struct App {
     pub accepted: Arc<AcceptedCredentials>,
     /// Refusals of each caller in this minute.
     pub refusal_rates: Arc<RequestRates>,
+    /// Limits on letters with one-time codes.
+    pub letters: Arc<Letters>,
     /// Hashing of passwords, by a few at a time.
     pub hashing: Arc<Hashing>,
     /// Cached metadata of the OpenID Connect provider.
@@ -66,6 +69,7 @@ impl App {
             uploads: Arc::new(RequestRates::daily()),
             accepted: Arc::default(),
             refusal_rates: Arc::default(),
+            letters: Arc::default(),
             hashing: Arc::default(),
             provider: Arc::default(),
             stopping: CancellationToken::new(),

@@ -40,6 +40,7 @@ const MAIL_SENDERS: usize = 2;
 /// Fails when the database cannot be opened or the address is not available.
 pub fn serve(config: Serve) -> Result<ExitCode> {
     start_log(config.log_json);
+    config.check()?;
     block_on(async {
         let db = config.database.open(subscribers()).await?;
         let claim = db.claim_to_serve().await?;

@@ -134,12 +134,12 @@ async fn read_queue(app: &App) -> Result<()> {
 }
 
 fn may_read_metrics(app: &App, origin: &Origin, headers: &HeaderMap) -> bool {
-    if let Some(token) = &app.config.metrics_token {
+    if app.config.metrics_token.is_some() {
         let sent = headers
             .get(AUTHORIZATION)
             .and_then(|sent| sent.to_str().ok());
         let sent = sent.and_then(|sent| sent.strip_prefix("Bearer "));
-        return sent.is_some_and(|sent| token.is(sent));
+        return sent.is_some_and(|sent| app.config.is_metrics_token(sent));
     }
     // A client behind an unknown proxy may be anybody.
     let is_forwarded = [FORWARDED, HeaderName::from_static("x-forwarded-for")]

@@ -28,36 +28,41 @@ pub(super) async fn list_mistakes(request: Request, next: Next) -> Response {
         return Error::TooLarge(MAX_JSON_BYTES).into_response();
     };
     let body = serde_json::from_slice::<Value>(&bytes).ok();
-    let has_list = body.as_ref().is_some_and(|body| has_list(schema, body));
+    let found = body.as_ref().map(|body| mistakes(schema, body));
+    let found = found.unwrap_or_default();
+    let has_list = found.iter().any(|mistake| mistake.is_list_for_object);
     let given = if has_list {
         Body::from(LIST_FOR_OBJECT)
     } else {
         Body::from(bytes)
     };
     let response = next.run(Request::from_parts(parts, given)).await;
-    let Some(body) = body.filter(|_| response.status() == StatusCode::UNPROCESSABLE_ENTITY) else {
+    if response.status() != StatusCode::UNPROCESSABLE_ENTITY {
         return response;
-    };
-    with_mistakes(response, &mistakes(schema, &body)).await
+    }
+    with_mistakes(response, &found).await
 }
 
 /// Body that no handler takes, in place of one with a list for an object.
 const LIST_FOR_OBJECT: &str = "\"a list in place of an object\"";
 
-/// Checks whether a list stands where the schema has an object.
-fn has_list(schema: &'static Value, body: &Value) -> bool {
-    let mut found = Vec::new();
-    check(schema, body, "", &mut found);
-    found.iter().any(|mistake| {
-        let pointer = mistake["pointer"].as_str().unwrap_or_default();
-        let is_list = body.pointer(pointer).is_some_and(Value::is_array);
-        is_list && mistake["detail"].as_str().is_some_and(is_of_object)
-    })
+/// What in a body is not as its schema says.
+struct Mistake {
+    /// JSON pointer of the part.
+    pointer: String,
+    detail: String,
+    /// True if the part is a list, and an object is among what it may be.
+    is_list_for_object: bool,
 }
 
-/// Checks whether a mistake is that something is no object.
-fn is_of_object(detail: &str) -> bool {
-    detail.contains("is not of type object")
+impl Mistake {
+    fn new(pointer: &str, detail: impl Into<String>) -> Mistake {
+        Mistake {
+            pointer: pointer.to_owned(),
+            detail: detail.into(),
+            is_list_for_object: false,
+        }
+    }
 }
 
 /// Returns the schema of an operation's JSON body.
@@ -72,7 +77,7 @@ fn body_schema(request: &Request) -> Option<&'static Value> {
 }
 
 /// Adds mistakes to the problem in a response.
-async fn with_mistakes(response: Response, found: &[Value]) -> Response {
+async fn with_mistakes(response: Response, found: &[Mistake]) -> Response {
     let (mut parts, body) = response.into_parts();
     let is_problem = parts.headers.get(CONTENT_TYPE);
     let is_problem = is_problem.is_some_and(|kind| kind == "application/problem+json");
@@ -85,9 +90,9 @@ async fn with_mistakes(response: Response, found: &[Value]) -> Response {
     };
     let mut errors = problem["errors"].as_array().cloned().unwrap_or_default();
     for mistake in found {
-        let known = |error: &Value| error["pointer"] == mistake["pointer"];
-        if !errors.iter().any(known) {
-            errors.push(mistake.clone());
+        let pointer = mistake.pointer.as_str();
+        if !errors.iter().any(|error| error["pointer"] == pointer) {
+            errors.push(json!({ "pointer": pointer, "detail": mistake.detail }));
         }
     }
     if errors.is_empty() {
@@ -103,21 +108,21 @@ async fn with_mistakes(response: Response, found: &[Value]) -> Response {
 }
 
 /// Lists what in a body is not as its schema says.
-fn mistakes(schema: &'static Value, body: &Value) -> Vec<Value> {
+fn mistakes(schema: &'static Value, body: &Value) -> Vec<Mistake> {
     let mut found = Vec::new();
     check(schema, body, "", &mut found);
     found.truncate(MOST_MISTAKES);
     found
 }
 
-fn check(schema: &'static Value, value: &Value, pointer: &str, found: &mut Vec<Value>) {
+fn check(schema: &'static Value, value: &Value, pointer: &str, found: &mut Vec<Mistake>) {
     if let Some(name) = schema["$ref"].as_str() {
         if let Some(referenced) = DOCUMENT.pointer(name.trim_start_matches('#')) {
             check(referenced, value, pointer, found);
         }
         return;
     }
-    let mut add = |detail: String| found.push(json!({ "pointer": pointer, "detail": detail }));
+    let mut add = |detail: String| found.push(Mistake::new(pointer, detail));
     if let Some(forms) = schema["oneOf"].as_array().or(schema["anyOf"].as_array()) {
         return check_forms(forms, value, pointer, found);
     }
@@ -129,10 +134,11 @@ fn check(schema: &'static Value, value: &Value, pointer: &str, found: &mut Vec<V
     }
     if !has_type(&schema["type"], value) {
         let wanted = schema["type"].to_string().replace(['"', '[', ']'], "");
-        return add(format!(
-            "{value} is not of type {}",
-            wanted.replace(',', " or ")
-        ));
+        let wanted = wanted.replace(',', " or ");
+        return found.push(Mistake {
+            is_list_for_object: value.is_array() && has_type(&schema["type"], &json!({})),
+            ..Mistake::new(pointer, format!("{value} is not of type {wanted}"))
+        });
     }
     if let Some(number) = value.as_f64() {
         if let Some(least) = schema["minimum"].as_f64().filter(|least| number < *least) {
@@ -161,13 +167,13 @@ fn check(schema: &'static Value, value: &Value, pointer: &str, found: &mut Vec<V
 }
 
 /// Checks the members of an object or list.
-fn check_parts(schema: &'static Value, value: &Value, pointer: &str, found: &mut Vec<Value>) {
+fn check_parts(schema: &'static Value, value: &Value, pointer: &str, found: &mut Vec<Mistake>) {
     if let Some(object) = value.as_object() {
         let required = schema["required"].as_array().into_iter().flatten();
         for name in required.filter_map(Value::as_str) {
             if !object.contains_key(name) {
                 let pointer = format!("{pointer}/{}", escaped(name));
-                found.push(json!({ "pointer": pointer, "detail": "is missing" }));
+                found.push(Mistake::new(&pointer, "is missing"));
             }
         }
         for (name, part) in object {
@@ -189,8 +195,8 @@ fn check_parts(schema: &'static Value, value: &Value, pointer: &str, found: &mut
 }
 
 /// Checks a value that may have one of several forms: by the form that fits it best.
-fn check_forms(forms: &'static [Value], value: &Value, pointer: &str, found: &mut Vec<Value>) {
-    let mut least: Option<Vec<Value>> = None;
+fn check_forms(forms: &'static [Value], value: &Value, pointer: &str, found: &mut Vec<Mistake>) {
+    let mut least: Option<Vec<Mistake>> = None;
     for form in forms {
         let mut here = Vec::new();
         check(form, value, pointer, &mut here);

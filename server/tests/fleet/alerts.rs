@@ -24,6 +24,7 @@ on_both!(
     without_a_model_a_cleared_alert_is_not_reported_as_over,
     several_alerts_are_acknowledged_together_or_not_at_all,
     an_alert_is_assigned_to_a_colleague_and_commented,
+    an_alert_has_so_many_comments_and_no_more,
     a_snoozed_alert_leaves_the_fleets_rows_until_its_time_or_until_it_gets_worse,
 );
 
@@ -454,6 +455,20 @@ async fn an_alert_is_assigned_to_a_colleague_and_commented(server: TestServer) {
         ada.post(&comments, &json!({ "text": " " })).await.problem(),
         "invalid"
     );
+    server.finish().await;
+}
+
+async fn an_alert_has_so_many_comments_and_no_more(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    let comments = path(&list(&ada, "").await[0], "/comments");
+    for number in 1..=200 {
+        let comment = json!({ "text": format!("{number}") });
+        assert_eq!(ada.post(&comments, &comment).await.status, 201, "{number}");
+    }
+    let one_more = ada.post(&comments, &json!({ "text": "201" })).await;
+    assert_eq!(one_more.problem(), "wrong-state");
     server.finish().await;
 }
 

@@ -1,7 +1,10 @@
 //! The first run of a server, invitations of companies' users, and forgotten passwords.
 
+use crate::second_factor::set_up;
 use binnacle_fleet::operators;
 use binnacle_platform::audit::RequestContext;
+use binnacle_platform::db::execute;
+use binnacle_platform::ids::UserId;
 use binnacle_platform::time::Time;
 use binnacle_server_testing::{
     ApiResponse, Engine, PASSWORD, Relay, TestServer, on_both, try_sign_in,
@@ -15,6 +18,8 @@ on_both!(
     an_operators_own_firm_is_seen_by_nobody_else_until_it_is_connected,
     a_platform_admin_invites_a_companys_first_user,
     an_unknown_address_gets_the_same_response_as_a_known_one,
+    nobody_invites_an_admin_beside_one_who_signs_in_by_a_provider,
+    a_new_password_is_judged_only_for_who_may_set_it,
 );
 
 /// Longest wait for a letter to a relay in this process.
@@ -142,6 +147,44 @@ async fn a_platform_admin_invites_a_companys_first_user(server: TestServer) {
     server.finish().await;
 }
 
+async fn nobody_invites_an_admin_beside_one_who_signs_in_by_a_provider(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let root = ada.platform_admin(&server).await;
+    let id = ada.get("/me").await.good()["user_id"].clone();
+    let id = UserId(id.as_str().unwrap().parse().unwrap());
+    let mut tx = server.app.db.begin().await.unwrap();
+    execute!(
+        &mut tx,
+        "UPDATE users SET password_hash = '' WHERE id = $1",
+        id
+    )
+    .unwrap();
+    execute!(
+        &mut tx,
+        "INSERT INTO identities (issuer, subject, user_id, created_at)
+         VALUES ('https://login.example', 'ada', $1, 0)",
+        id
+    )
+    .unwrap();
+    tx.commit().await.unwrap();
+    let users = format!("/operators/{}/users", ada.operator);
+    let other = json!({ "name": "Root", "email": "root@server.example" });
+    assert_eq!(root.post(&users, &other).await.problem(), "wrong-state");
+    server.finish().await;
+}
+
+async fn a_new_password_is_judged_only_for_who_may_set_it(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let weak = json!({ "current": "a guess", "new": "password1234" });
+    let change = ada.request(reqwest::Method::PUT, "/me/password");
+    let refused = ApiResponse::send(change.json(&weak)).await;
+    assert_eq!(refused.problem(), "wrong-password");
+    let weak = json!({ "code": "AAAA-AAAA-AAAA-AAAA", "password": "password1234" });
+    let refused = send(&server, "/invitations/accept", &weak).await;
+    assert_eq!(refused.problem(), "not-found");
+    server.finish().await;
+}
+
 async fn an_unknown_address_gets_the_same_response_as_a_known_one(server: TestServer) {
     let ada = server.admin("ada").await;
     for email in [ada.email.as_str(), "nobody@example.com"] {
@@ -159,22 +202,21 @@ async fn a_forgotten_password_is_set_with_a_mailed_code_and_an_invitation_is_mai
     let smtp = format!("smtp://localhost:{}?tls=none", relay.port);
     let server = TestServer::start_with(Engine::Sqlite, &["--smtp-url", &smtp]).await;
     let (ada, bob) = (server.admin("ada").await, server.admin("bob").await);
+    set_up(&server, &ada).await;
     let forgotten = json!({ "email": ada.email.to_uppercase() });
     for _ in 0..2 {
         let asked = send(&server, "/password-resets", &forgotten).await;
         assert_eq!(asked.status, 202);
     }
-    let waited = tokio::time::timeout(PATIENCE, async {
-        while relay.letters().is_empty() {
-            tokio::task::yield_now().await;
-        }
-    });
-    waited.await.unwrap();
+    wait_for_letters(&relay, 1).await;
     let code = mailed_code(&relay, &ada.email);
     let accepted = json!({ "code": code, "password": "seven gulls over the quay" });
     send(&server, "/invitations/accept", &accepted).await.good();
     let old = try_sign_in(&server, &ada.email, PASSWORD).await;
     assert_eq!(old.problem(), "wrong-password");
+    // Whoever reads her mail has not her second factor.
+    let new = try_sign_in(&server, &ada.email, "seven gulls over the quay").await;
+    assert_eq!(new.problem(), "second-factor-needed");
     let grace = json!({ "email": "grace@example.com", "name": "Grace", "role": "viewer" });
     let invited = bob.post("/users", &grace).await.good();
     assert_eq!(invited["invitation"]["mailed"], true);
@@ -182,7 +224,59 @@ async fn a_forgotten_password_is_set_with_a_mailed_code_and_an_invitation_is_mai
     assert_eq!(invited["invitation"]["code"], code.as_str());
     // Asked for twice within minutes, sent once.
     assert_eq!(relay.letters().len(), 2);
+    // A stranger who asks for her does not end her invitation, and the audit log says so.
+    let forgotten = json!({ "email": "grace@example.com" });
+    assert_eq!(
+        send(&server, "/password-resets", &forgotten).await.status,
+        202
+    );
+    wait_for_letters(&relay, 3).await;
+    let lines = bob.get("/audit?route=/api/v1/password-resets").await.good();
+    assert_eq!(lines["items"].as_array().unwrap().len(), 1, "{lines}");
+    assert_eq!(lines["items"][0]["actor_kind"], "unidentified");
+    let accepted = json!({ "code": code, "password": "seven gulls over the quay" });
+    send(&server, "/invitations/accept", &accepted).await.good();
     server.finish().await;
+}
+
+#[tokio::test]
+async fn an_address_gets_a_few_letters_a_day_and_a_network_asks_for_so_many() {
+    let relay = Relay::start().await;
+    let smtp = format!("smtp://localhost:{}?tls=none", relay.port);
+    let server = TestServer::start_with(Engine::Sqlite, &["--smtp-url", &smtp]).await;
+    let ada = server.admin("ada").await;
+    let ask = async |email: &str| {
+        let forgotten = json!({ "email": email });
+        send(&server, "/password-resets", &forgotten).await
+    };
+    for letters in 1..=5 {
+        assert_eq!(ask(&ada.email).await.status, 202);
+        wait_for_letters(&relay, letters).await;
+        server.advance(300.0);
+    }
+    for number in 6..=50 {
+        // The permits of letters that were not sent are free again soon.
+        let asked = tokio::time::timeout(PATIENCE, async {
+            while ask(&ada.email).await.status != 202 {
+                tokio::task::yield_now().await;
+            }
+        });
+        asked.await.unwrap_or_else(|_| panic!("{number}"));
+        server.advance(300.0);
+    }
+    let refused = ask("nobody@example.com").await;
+    assert_eq!(refused.problem(), "throttled");
+    assert_eq!(relay.letters().len(), 5);
+    server.finish().await;
+}
+
+async fn wait_for_letters(relay: &Relay, count: usize) {
+    let waited = tokio::time::timeout(PATIENCE, async {
+        while relay.letters().len() < count {
+            tokio::task::yield_now().await;
+        }
+    });
+    waited.await.unwrap();
 }
 
 /// Returns the code in the letter to an address.

@@ -54,6 +54,23 @@ impl Program {
     }
 }
 
+#[test]
+fn a_mistyped_secret_setting_is_refused_without_being_printed() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, value) in [
+        ("BINNACLE_SECRETS_KEY", "0123456789abcdefg"),
+        ("BINNACLE_METRICS_TOKEN", "short-token"),
+    ] {
+        let mut serve = command(folder.path());
+        let serve = serve.args(["serve", "--listen", "127.0.0.1:0"]);
+        let refused = serve.env(name, value).output().unwrap();
+        assert!(!refused.status.success(), "{name}");
+        let said = String::from_utf8(refused.stderr).unwrap();
+        assert!(said.contains(name), "{said}");
+        assert!(!said.contains(value), "{said}");
+    }
+}
+
 fn command(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_binnacle-server"));
     command

@@ -14,7 +14,7 @@ use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Valid, optional_text, text_up_to};
+use binnacle_platform::http::{Id, Json, Valid, optional_text, remark};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{AlertId, OperatorId, UserId};
 use binnacle_platform::session;
@@ -29,6 +29,8 @@ use uuid::Uuid;
 const MAX_ALERTS: usize = 200;
 /// Maximum length of a comment, characters.
 const MAX_COMMENT_CHARS: usize = 1000;
+/// Maximum number of comments on an alert.
+const MAX_COMMENTS: i64 = 200;
 /// Longest time for which an alert is snoozed, seconds.
 const MAX_SNOOZE_S: f64 = 90.0 * 86_400.0;
 
@@ -258,6 +260,7 @@ async fn list_comments(
     params(("id" = AlertId, Path), Key), request_body = NewComment,
     responses((status = 201, body = CommentList), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "It has 200 comments", body = Problem),
               (status = 422, body = Problem)))]
 async fn comment_alert(
     Shared(app): Shared<App>,
@@ -268,7 +271,7 @@ async fn comment_alert(
     Valid(new): Valid<NewComment>,
 ) -> Result<(StatusCode, Json<CommentList>)> {
     let request_hash = idempotency::request_hash(&format!("comment on {id}"), &new)?;
-    let words = text_up_to("text", &new.text, MAX_COMMENT_CHARS)?;
+    let words = remark("text", &new.text, MAX_COMMENT_CHARS)?;
     let alert = store::must_find(&app.db, writer.operator, id).await?;
     let now: Time = app.clock.now().into();
     let comment = Uuid::now_v7();
@@ -277,6 +280,10 @@ async fn comment_alert(
         .once(&mut tx, writer.operator, &request_hash, comment, now)
         .await?;
     if made == comment {
+        if count_comments(&mut tx, &alert).await? >= MAX_COMMENTS {
+            let full = format!("{MAX_COMMENTS} comments are the most that an alert has");
+            return Err(Error::WrongState(full));
+        }
         let by = session::name_of(&mut tx, writer.user).await?;
         execute!(
             &mut tx,
@@ -310,6 +317,17 @@ async fn commit_and_publish(app: &App, mut tx: Tx, alert: &Alert) -> Result<Aler
         app.publish(event);
     }
     Ok(changed)
+}
+
+async fn count_comments(tx: &mut Tx, alert: &Alert) -> DbResult<i64> {
+    let found = row!(
+        in tx,
+        (i64,),
+        "SELECT COUNT(*) FROM alert_comments WHERE vessel_id = $1 AND alert_id = $2",
+        alert.vessel_id,
+        alert.id
+    )?;
+    Ok(found.map_or(0, |(comments,)| comments))
 }
 
 async fn comments(db: &Db, alert: &Alert) -> DbResult<Vec<Comment>> {

@@ -16,7 +16,7 @@ use binnacle_platform::ids::{OperatorId, UserId};
 use binnacle_platform::session::{self, Role};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
-use binnacle_platform::{password, secret, users};
+use binnacle_platform::{secret, users};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -101,12 +101,13 @@ async fn begin(
     let operator_name = text("operator_name", &new.operator_name)?;
     let name = text("name", &new.name)?;
     let email = users::checked_email(&new.email)?;
-    password::check("password", &new.password, &[&email, &name, &operator_name])?;
     let now: Time = app.clock.now().into();
     if !is_code(&app.db, &new.code).await? {
         return Err(refused(&request));
     }
-    let hash = app.hashing.acquire().await?.hash(new.password).await?;
+    let about = [email.as_str(), &name, &operator_name];
+    let permit = app.hashing.acquire().await?;
+    let hash = permit.hash_new("password", new.password, &about).await?;
     let mut tx = request.begin().await?;
     if !use_code(&mut tx, &new.code, now).await? {
         return Err(refused(&request));

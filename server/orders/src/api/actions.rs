@@ -16,7 +16,7 @@ use binnacle_platform::access::{PartyWriter, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Problem, Result};
-use binnacle_platform::http::{Id, Json, Valid, text};
+use binnacle_platform::http::{Id, Json, MAX_TEXT, Valid, remark as checked};
 use binnacle_platform::idempotency::Key;
 use binnacle_platform::ids::{EntryId, ModelId, OrderId};
 use serde::{Deserialize, Serialize};
@@ -169,7 +169,7 @@ pub(super) async fn close_work_order(
     key: Key,
     Valid(closing): Valid<Closing>,
 ) -> Result<Json<Order>> {
-    let text = text("text", &closing.text)?;
+    let text = checked("text", &closing.text, MAX_TEXT)?;
     let update = prepare_update(&app, request, writer, id, key, "closing", &closing)?;
     let (stored, done) = update.load().await?;
     if done.is_some() {
@@ -197,5 +197,5 @@ pub(super) async fn close_work_order(
 }
 
 fn checked_text(remark: &RemarkForm) -> Result<String> {
-    text("text", &remark.text)
+    checked("text", &remark.text, MAX_TEXT)
 }

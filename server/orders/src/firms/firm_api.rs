@@ -11,6 +11,7 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Valid, text};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{FirmId, OperatorId};
+use binnacle_platform::quotas::Quota;
 use binnacle_platform::session::Role;
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::users::{self, Invitation, NewCompanyUser};
@@ -18,6 +19,9 @@ use serde::Serialize;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
+
+/// Quota of the firms that an operator enters.
+pub const QUOTA: Quota = Quota::new("firms", "firms that you enter", 50, store::count);
 
 pub(super) fn router<S>() -> OpenApiRouter<S>
 where
@@ -63,7 +67,9 @@ async fn list_firms(State(app): State<App>, caller: Caller, page: Page) -> Resul
 /// until a platform admin engages it for another.
 #[utoipa::path(post, path = "/firms", tag = "platform", params(Key), request_body = NewCompany,
     responses((status = 201, body = Firm), (status = 401, body = Problem),
-              (status = 403, body = Problem), (status = 422, body = Problem)))]
+              (status = 403, body = Problem),
+              (status = 409, description = "The quota is used up", body = Problem),
+              (status = 422, body = Problem)))]
 async fn create_firm(
     State(app): State<App>,
     request: RequestContext,
@@ -80,6 +86,9 @@ async fn create_firm(
         .once(&mut tx, founder.key_owner, &request_hash, wanted.0, now)
         .await?;
     if made == wanted.0 {
+        if let Some(operator) = founder.operator {
+            QUOTA.must_have_room(&mut tx, operator, now).await?;
+        }
         store::insert(&mut tx, wanted, &name, founder.operator, now).await?;
         if let Some(operator) = founder.operator {
             store::engage(&mut tx, operator, wanted, now).await?;

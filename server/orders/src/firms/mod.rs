@@ -16,6 +16,7 @@ mod terms_api;
 
 pub use capacity::{Requester, require_capacity};
 pub use engaged::{EngagedFirm, of_operator};
+pub use firm_api::QUOTA;
 pub use port_names::named_port;
 pub use store::{create, engage, exists, find_name};
 pub use taken::{StoredBooking, Visit, list_bookings, teams_taken};

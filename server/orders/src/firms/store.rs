@@ -4,6 +4,7 @@ use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::ids::{FirmId, OperatorId};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
+use futures_util::future::BoxFuture;
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
@@ -46,6 +47,19 @@ pub(super) async fn insert(
         now
     )?;
     Ok(())
+}
+
+/// Counts the firms that an operator has entered.
+pub(super) fn count(tx: &mut Tx, tenant: Tenant, _: Time) -> BoxFuture<'_, Result<i64>> {
+    Box::pin(async move {
+        let found = row!(
+            in tx,
+            (i64,),
+            "SELECT COUNT(*) FROM firms WHERE founded_by = $1",
+            tenant.operator()
+        )?;
+        Ok(found.map_or(0, |(count,)| count))
+    })
 }
 
 /// Returns whether a firm exists.

@@ -1,8 +1,8 @@
 //! Refused sign-ins, codes and tokens: why, and for which account.
 //!
-//! Invariants: each one is in the server's own log. Each failed attempt has an audit line, and a
-//! caller who is only turned away has one a minute, so that nobody can fill the audit log. What
-//! was typed is kept only if it has the form of an e-mail address: it may be a password.
+//! Invariants: each one is in the server's own log. Each failed attempt has an audit line, and of
+//! those only turned away a network has one a minute for each reason, whatever it sends, so that
+//! nobody can fill the audit log. What was typed is kept only if it has the form of an e-mail address: it may be a password.
 
 use crate::db::{self, Tx, row};
 use crate::ids::{FirmId, OperatorId};
@@ -83,8 +83,7 @@ impl Refused {
         if self.why.is_guess() {
             return true;
         }
-        let account = self.account.as_deref().unwrap_or_default();
-        let caller = format!("{} {network} {account}", self.why.name());
+        let caller = format!("{} {network}", self.why.name());
         !rates.count(secret::hash(&caller), now_s, 1).is_exceeded
     }
 

@@ -99,6 +99,20 @@ impl RequestContext {
         facts.find_vessel = Some(find_vessel);
     }
 
+    /// Returns the tenant of the actor, if both are known.
+    pub fn tenant(&self) -> Option<Tenant> {
+        let facts = self.trail.facts();
+        facts.actor.as_ref().and_then(|actor| actor.tenant())
+    }
+
+    /// Returns the context of what a request starts and does not wait for. It has a line of its own,
+    /// since that of the request may be written before.
+    #[must_use]
+    pub fn after_response(&self, actor: Actor) -> RequestContext {
+        let trail = self.trail.after_response(actor);
+        RequestContext::new(self.db.clone(), Arc::new(trail))
+    }
+
     /// Logs reads by firms on this request.
     pub fn log_reads_of_firms(&self) {
         self.trail.facts().logs_firms = true;

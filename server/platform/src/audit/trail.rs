@@ -71,9 +71,18 @@ impl Actor {
         Actor::without_id(ActorKind::Command, "command line")
     }
 
-    /// Returns the actor for somebody who did not prove who they are.
-    fn unidentified() -> Actor {
-        Actor::without_id(ActorKind::Unidentified, "")
+    /// Returns the actor for somebody who did not prove who they are, and the tenant whose account it
+    /// is about.
+    pub fn unidentified(tenant: Option<Tenant>) -> Actor {
+        Actor {
+            tenant,
+            ..Actor::without_id(ActorKind::Unidentified, "")
+        }
+    }
+
+    /// Returns the actor's tenant.
+    pub(super) fn tenant(&self) -> Option<Tenant> {
+        self.tenant
     }
 
     fn without_id(kind: ActorKind, name: &str) -> Actor {
@@ -160,6 +169,25 @@ impl AuditTrail {
         self.facts.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Returns the record of what the request starts and does not wait for.
+    pub(super) fn after_response(&self, actor: Actor) -> AuditTrail {
+        let facts = Facts {
+            actor: Some(actor),
+            is_change: true,
+            ..Facts::default()
+        };
+        AuditTrail {
+            id: Uuid::now_v7(),
+            at: self.at,
+            address: self.address.clone(),
+            network: self.network.clone(),
+            method: self.method.clone(),
+            route: self.route.clone(),
+            path: self.path.clone(),
+            facts: Mutex::new(facts),
+        }
+    }
+
     pub(super) fn is_of_agent(&self) -> bool {
         let facts = self.facts();
         let actor = facts.actor.as_ref();
@@ -215,7 +243,7 @@ impl AuditTrail {
     /// completed change.
     async fn write(&self, tx: &mut Tx, status: Option<StatusCode>) -> db::Result<bool> {
         let facts = self.facts().clone();
-        let stranger = facts.refused.as_ref().map(|_| Actor::unidentified());
+        let stranger = facts.refused.as_ref().map(|_| Actor::unidentified(None));
         let Some(actor) = facts.actor.or(stranger) else {
             return Ok(false);
         };

@@ -4,6 +4,7 @@ use crate::db::{Db, Subscribers};
 use crate::outbound::Reach;
 use crate::sealing::Seals;
 use crate::tls::Certificate;
+use anyhow::{Context, bail};
 use binnacle_listener::Limits;
 use clap::{Args, ValueEnum};
 use sha2::{Digest, Sha256};
@@ -25,28 +26,59 @@ pub struct Database {
     pub database_url: String,
     /// Key that seals secrets in the database, 64 hexadecimal digits; earlier keys, which only open,
     /// follow after commas
-    #[arg(long, global = true, env = "BINNACLE_SECRETS_KEY", hide_env_values = true,
-          value_parser = Seals::parse)]
-    pub secrets_key: Option<Seals>,
+    #[arg(
+        long,
+        global = true,
+        env = "BINNACLE_SECRETS_KEY",
+        hide_env_values = true
+    )]
+    pub secrets_key: Option<Secret>,
     /// File with these keys
-    #[arg(long, global = true, env = "BINNACLE_SECRETS_KEY_FILE", value_parser = read_seals,
-          conflicts_with = "secrets_key")]
-    pub secrets_key_file: Option<Seals>,
+    #[arg(
+        long,
+        global = true,
+        env = "BINNACLE_SECRETS_KEY_FILE",
+        conflicts_with = "secrets_key"
+    )]
+    pub secrets_key_file: Option<PathBuf>,
 }
 
-fn read_seals(file: &str) -> Result<Seals, String> {
-    Seals::read(file.as_ref())
+/// Setting that no error message may repeat: clap shows a value that its parser refuses.
+#[derive(Clone)]
+pub struct Secret(String);
+
+impl From<&str> for Secret {
+    fn from(text: &str) -> Secret {
+        Secret(text.to_owned())
+    }
+}
+
+impl std::fmt::Debug for Secret {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Secret(…)")
+    }
 }
 
 impl Database {
+    fn seals(&self) -> anyhow::Result<Seals> {
+        if let Some(Secret(keys)) = &self.secrets_key {
+            let parsed = Seals::parse(keys).map_err(anyhow::Error::msg);
+            return parsed.context("BINNACLE_SECRETS_KEY, or --secrets-key");
+        }
+        let read = self.secrets_key_file.as_deref().map(Seals::read);
+        let read = read.transpose().map_err(anyhow::Error::msg);
+        let read = read.context("BINNACLE_SECRETS_KEY_FILE, or --secrets-key-file")?;
+        Ok(read.unwrap_or_default())
+    }
+
     /// Opens the database with its keys.
     ///
     /// # Errors
     /// Fails when the database cannot be reached.
     pub async fn open(&self, subscribers: Subscribers) -> anyhow::Result<Db> {
-        let seals = self.secrets_key.as_ref().or(self.secrets_key_file.as_ref());
+        let seals = self.seals()?;
         let db = Db::connect(&self.database_url, subscribers).await?;
-        Ok(db.with_seals(seals.cloned().unwrap_or_default()))
+        Ok(db.with_seals(seals))
     }
 }
 
@@ -121,13 +153,8 @@ pub struct Serve {
           value_parser = clap::value_parser!(u8).range(0..=8))]
     pub proxies: u8,
     /// Bearer token required to read /metrics; without one only this machine may read it
-    #[arg(
-        long,
-        env = "BINNACLE_METRICS_TOKEN",
-        hide_env_values = true,
-        value_parser = metrics_token
-    )]
-    pub metrics_token: Option<MetricsToken>,
+    #[arg(long, env = "BINNACLE_METRICS_TOKEN", hide_env_values = true)]
+    pub metrics_token: Option<Secret>,
     /// Requests that a person, program or client address may make in a minute, in this process
     #[arg(long, env = "BINNACLE_REQUESTS_PER_MINUTE", default_value_t = 6000,
           value_parser = clap::value_parser!(u32).range(1..))]
@@ -166,38 +193,36 @@ pub struct Serve {
     pub log_json: bool,
 }
 
-/// Bearer token for reading the metrics.
-#[derive(Clone)]
-pub struct MetricsToken(String);
-
-/// Minimum length: a shorter token could be guessed.
+/// Minimum length of the metrics' token: a shorter one could be guessed.
 const SHORTEST_TOKEN: usize = 20;
 
-fn metrics_token(text: &str) -> Result<MetricsToken, String> {
-    let is_sent_whole = text.bytes().all(|byte| byte.is_ascii_graphic());
-    if is_sent_whole && text.len() >= SHORTEST_TOKEN {
-        return Ok(MetricsToken(text.to_owned()));
-    }
-    Err(format!(
-        "must have at least {SHORTEST_TOKEN} printable ASCII characters and no blanks"
-    ))
-}
-
-impl MetricsToken {
-    /// Compares a token in constant time.
-    pub fn is(&self, given: &str) -> bool {
-        let [own, given] = [self.0.as_str(), given].map(|text| Sha256::digest(text.as_bytes()));
-        own == given
-    }
-}
-
-impl std::fmt::Debug for MetricsToken {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("MetricsToken(…)")
-    }
-}
-
 impl Serve {
+    /// Checks what cannot be checked while the settings are parsed.
+    ///
+    /// # Errors
+    /// Fails when the metrics' token is short, or cannot be sent in a header.
+    pub fn check(&self) -> anyhow::Result<()> {
+        let Some(Secret(token)) = &self.metrics_token else {
+            return Ok(());
+        };
+        let is_sent_whole = token.bytes().all(|byte| byte.is_ascii_graphic());
+        if is_sent_whole && token.len() >= SHORTEST_TOKEN {
+            return Ok(());
+        }
+        bail!(
+            "BINNACLE_METRICS_TOKEN, or --metrics-token: must have at least {SHORTEST_TOKEN} \
+             printable ASCII characters and no blanks"
+        )
+    }
+
+    /// Compares a token with that for the metrics, in constant time; none is right without one.
+    pub fn is_metrics_token(&self, given: &str) -> bool {
+        self.metrics_token.as_ref().is_some_and(|Secret(own)| {
+            let [own, given] = [own, given].map(|text| Sha256::digest(text.as_bytes()));
+            own == given
+        })
+    }
+
     /// Returns true if cookies are limited to https.
     pub fn has_secure_cookies(&self) -> bool {
         self.secure_cookies || self.tls_cert.is_some()

@@ -147,12 +147,25 @@ impl Db {
             }
             Pools::Postgres(pool) => Connection::Postgres(pool.begin().await?),
         };
-        Ok(Tx {
+        Ok(self.transaction(connection))
+    }
+
+    /// Begins a transaction that only reads. On SQLite it waits for no writer, and a write in it fails.
+    pub async fn begin_reading(&self) -> Result<Tx> {
+        let connection = match self.pools() {
+            Pools::Sqlite { readers, .. } => Connection::Sqlite(readers.begin().await?),
+            Pools::Postgres(pool) => Connection::Postgres(pool.begin().await?),
+        };
+        Ok(self.transaction(connection))
+    }
+
+    fn transaction(&self, connection: Connection) -> Tx {
+        Tx {
             connection,
             subscribers: Arc::clone(&self.subscribers),
             seals: self.seals.clone(),
             hook: None,
-        })
+        }
     }
 
     /// Closes every connection once it is idle.

@@ -10,8 +10,8 @@ use serde::de::DeserializeOwned;
 
 pub use axum::Json;
 
-/// Longest accepted name or note, characters.
-const MAX_TEXT: usize = 200;
+/// Longest accepted name or short remark, characters.
+pub const MAX_TEXT: usize = 200;
 
 /// JSON body.
 #[derive(FromRequest)]
@@ -68,14 +68,26 @@ impl<S: Send + Sync, T: DeserializeOwned + Send> FromRequestParts<S> for Id<T> {
 /// # Errors
 /// Fails when it is empty, too long or not on one line.
 pub fn text(field: &'static str, value: &str) -> Result<String> {
-    text_up_to(field, value, MAX_TEXT)
+    checked(field, value, MAX_TEXT, hides_something)
 }
 
-/// Returns a text of at most `most` characters, trimmed.
+/// Returns a remark of at most `most` characters, trimmed. Unlike a name it may have characters that
+/// cannot be seen beside others that can: a telephone's pictographs consist of them (Unicode
+/// Technical Standard 51, section 2).
 ///
 /// # Errors
-/// Fails as [`text`] does.
-pub fn text_up_to(field: &'static str, value: &str, most: usize) -> Result<String> {
+/// Fails when it is empty, too long or not on one line.
+pub fn remark(field: &'static str, value: &str, most: usize) -> Result<String> {
+    let hides_all = |text: &str| text.chars().all(|c| is_invisible(c) || is_joiner(c));
+    checked(field, value, most, hides_all)
+}
+
+fn checked(
+    field: &'static str,
+    value: &str,
+    most: usize,
+    hides_something: impl Fn(&str) -> bool,
+) -> Result<String> {
     let value = value.trim();
     let detail = if value.is_empty() {
         "is empty"
@@ -110,7 +122,7 @@ fn hides_something(text: &str) -> bool {
     let mut characters = text.chars().peekable();
     while let Some(c) = characters.next() {
         let is_hidden = match c {
-            '\u{200c}' | '\u{200d}' => ![before, characters.peek().copied()]
+            c if is_joiner(c) => ![before, characters.peek().copied()]
                 .into_iter()
                 .all(|beside| beside.is_some_and(is_joining)),
             _ => is_invisible(c),
@@ -121,6 +133,11 @@ fn hides_something(text: &str) -> bool {
         before = Some(c);
     }
     false
+}
+
+/// Checks for a character that joins its neighbours, or keeps them from joining.
+fn is_joiner(c: char) -> bool {
+    matches!(c, '\u{200c}' | '\u{200d}')
 }
 
 /// Checks for a character of the scripts that join, Arabic to Sinhala and Myanmar.
@@ -216,6 +233,27 @@ mod tests {
             "  ",
         ] {
             assert!(text("name", hidden).is_err(), "{hidden:?}");
+        }
+    }
+
+    #[test]
+    fn a_remark_may_have_the_pictographs_of_a_telephone() {
+        for seen in [
+            "Lightning \u{26a0}\u{fe0f}",
+            "\u{1f477}\u{200d}\u{2642}\u{fe0f} on board",
+        ] {
+            assert_eq!(remark("text", seen, 200).unwrap(), seen);
+            assert!(text("name", seen).is_err(), "{seen:?}");
+        }
+        for refused in [
+            "",
+            " ",
+            "\u{200b}\u{200d}",
+            "one\ntwo",
+            "Nao\u{202e}",
+            "longer",
+        ] {
+            assert!(remark("text", refused, 5).is_err(), "{refused:?}");
         }
     }
 }

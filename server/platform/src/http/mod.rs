@@ -14,8 +14,8 @@ mod version;
 pub use amended::{Amended, never_null};
 pub use file::{FileContent, FileName, file};
 pub use json::{
-    Id, Json, Params, Valid, ValidOrNone, degrees, is_control, optional_text, text, text_up_to,
-    time, unknown_name,
+    Id, Json, MAX_TEXT, Params, Valid, ValidOrNone, degrees, is_control, optional_text, remark,
+    text, time, unknown_name,
 };
 pub use page::{Listed, Page, Period};
 pub use version::{IfMatch, Version, Versioned};

@@ -1,6 +1,7 @@
 //! Hashing of passwords, by a few at a time. Each hash takes 19 MB and a core, so that its memory
 //! is kept and used again: otherwise every thread that ever hashed would hold its own.
 
+use super::check;
 use crate::error::Result;
 use crate::secret::{self, HashMemory};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -73,14 +74,25 @@ impl Permit {
         Ok(matches.await?)
     }
 
-    /// Returns the hash of a password, as it is stored.
+    /// Checks a new password as [`check`] does, and returns its hash, as it is stored. Both keep a
+    /// core busy, so the permit moves into the task here too.
     ///
     /// # Errors
-    /// Fails when there is too little memory.
-    pub async fn hash(mut self, password: String) -> Result<String> {
-        let hashed =
-            tokio::task::spawn_blocking(move || secret::hash_password(&password, &mut self.memory));
-        Ok(hashed.await??)
+    /// [`Error::Invalid`](crate::error::Error::Invalid) with `field`; fails when there is too little
+    /// memory.
+    pub async fn hash_new(
+        mut self,
+        field: &'static str,
+        password: String,
+        about: &[&str],
+    ) -> Result<String> {
+        let about: Vec<String> = about.iter().map(|text| (*text).to_owned()).collect();
+        let hashed = tokio::task::spawn_blocking(move || {
+            let about: Vec<&str> = about.iter().map(String::as_str).collect();
+            check(field, &password, &about)?;
+            Ok(secret::hash_password(&password, &mut self.memory)?)
+        });
+        hashed.await?
     }
 }
 
@@ -103,7 +115,8 @@ mod tests {
         }
         assert_eq!(hashing.free().len(), AT_ONCE);
         let permit = hashing.acquire().await.unwrap();
-        let stored = permit.hash("nine bells at noon".to_owned()).await.unwrap();
+        let password = "nine bells at noon".to_owned();
+        let stored = permit.hash_new("password", password, &[]).await.unwrap();
         let permit = hashing.acquire().await.unwrap();
         let (matches, permit) = permit
             .matches("nine bells at noon".to_owned(), Some(stored.clone()))

@@ -52,7 +52,7 @@ impl QuotaList {
         tenant: Tenant,
         now: Time,
     ) -> db::Result<Vec<(&'static str, i64, i64)>> {
-        let mut tx = db.begin().await?;
+        let mut tx = db.begin_reading().await?;
         let mut uses = Vec::new();
         for quota in self.0.iter() {
             let used = (quota.count)(&mut tx, tenant, now).await?;
@@ -116,9 +116,7 @@ impl Quota {
             status: StatusCode::CONFLICT,
             kind: "quota-exceeded",
             title: "Quota used up",
-            detail: format!(
-                "{most} {things} are the limit; remove some, or ask who runs this server for more"
-            ),
+            detail: format!("the limit on {things} is {most}; ask who runs this server for more"),
             extra: Map::from_iter([("quota".to_owned(), self.name.into())]),
         }
         .into())

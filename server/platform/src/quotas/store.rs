@@ -35,20 +35,21 @@ pub(crate) async fn set(
         operator
     )?;
     known.ok_or(Error::NotFound("operator"))?;
-    execute!(
-        &mut *tx,
-        "DELETE FROM quotas WHERE operator_id = $1 AND name = $2",
-        operator,
-        quota.name
-    )?;
-    if let Some(most) = most {
-        execute!(
+    match most {
+        Some(most) => execute!(
             tx,
-            "INSERT INTO quotas (operator_id, name, most) VALUES ($1, $2, $3)",
+            "INSERT INTO quotas (operator_id, name, most) VALUES ($1, $2, $3)
+             ON CONFLICT (operator_id, name) DO UPDATE SET most = excluded.most",
             operator,
             quota.name,
             most
-        )?;
-    }
+        )?,
+        None => execute!(
+            tx,
+            "DELETE FROM quotas WHERE operator_id = $1 AND name = $2",
+            operator,
+            quota.name
+        )?,
+    };
     Ok(())
 }

@@ -8,8 +8,10 @@
 use crate::secret;
 use ring::aead::{AES_256_GCM, Aad, LessSafeKey, NONCE_LEN, Nonce, UnboundKey};
 use std::fmt;
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::sync::Arc;
+use tracing::warn;
 
 /// Length of a key, bytes.
 const KEY_BYTES: usize = 32;
@@ -75,13 +77,20 @@ impl Seals {
         Ok(Seals(keys.into()))
     }
 
-    /// Reads keys from a file, the one that seals first.
+    /// Reads keys from a file, the one that seals first. Warns if others than its owner may read it.
     ///
     /// # Errors
     /// Fails when the file cannot be read, or has something else in it.
     pub fn read(file: &Path) -> Result<Seals, String> {
         let text = std::fs::read_to_string(file)
             .map_err(|error| format!("cannot read {}: {error}", file.display()))?;
+        let mode = std::fs::metadata(file).map_or(0, |file| file.permissions().mode());
+        if mode & 0o077 != 0 {
+            warn!(
+                file = %file.display(),
+                "other accounts may read the keys that seal secrets: chmod 600"
+            );
+        }
         Seals::parse(&text).map_err(|error| format!("{}: {error}", file.display()))
     }
 

@@ -116,14 +116,18 @@ pub(crate) async fn reseal(tx: &mut Tx) -> Result<u64> {
     let mut sealed = 0;
     for (user, bytes, sealed_by) in found {
         let row = row_of(user);
-        let secret = tx.seals().open(&row, &StoredSecret { bytes, sealed_by })?;
+        let found = StoredSecret { bytes, sealed_by };
+        let secret = tx.seals().open(&row, &found)?;
         let stored = tx.seals().seal(&row, &secret);
+        // A person may have begun with another secret in the meantime.
         sealed += execute!(
             &mut *tx,
-            "UPDATE second_factors SET secret = $2, sealed_by = $3 WHERE user_id = $1",
+            "UPDATE second_factors SET secret = $2, sealed_by = $3
+             WHERE user_id = $1 AND secret = $4",
             user,
             stored.bytes,
-            stored.sealed_by
+            stored.sealed_by,
+            found.bytes
         )?;
     }
     Ok(sealed)

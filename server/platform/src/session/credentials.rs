@@ -56,12 +56,12 @@ pub(crate) async fn check_password(
     email: &str,
     password: String,
 ) -> Result<User> {
-    if password.len() > password::MAX_BYTES {
-        request.refuse(Refusal::WrongPassword, Some(email));
-        return Err(Error::WrongPassword);
-    }
     let now = app.clock.now();
     throttle::check(request, subjects, now).await?;
+    if password.len() > password::MAX_BYTES {
+        throttle::note_failure(request, subjects, Refusal::WrongPassword, now).await?;
+        return Err(Error::WrongPassword);
+    }
     let permit = app.hashing.acquire().await?;
     // Others may have failed while this attempt waited. Each holds its permit until its failure
     // is noted, so that simultaneous guesses cannot escape the count.

@@ -117,7 +117,8 @@ pub(crate) async fn forget_all(tx: &mut Tx, user: UserId) -> db::Result<()> {
 /// Returns the header that sets the cookie.
 pub(super) fn set_cookie(app: &App, token: &str) -> HeaderValue {
     let config = &app.config;
-    cookie::header(config, name(config), token, KNOWN_FOR_S, SameSite::Strict)
+    // Lax, so that it also comes with the return from a sign-in provider.
+    cookie::header(config, name(config), token, KNOWN_FOR_S, SameSite::Lax)
 }
 
 fn name(config: &Serve) -> &'static str {

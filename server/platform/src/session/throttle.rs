@@ -68,7 +68,7 @@ impl Subjects {
             let all = vec![Subject::new(&device, FREE_FOR_PERSON)];
             return Ok(Subjects { account, all });
         }
-        let mut all = vec![Subject::new(email, FREE_FOR_PERSON)];
+        let mut all = vec![Subject::new(&format!("e-mail {email}"), FREE_FOR_PERSON)];
         all.extend(networks(&visitor.from));
         Ok(Subjects { account, all })
     }

@@ -6,7 +6,6 @@ use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Listed, Page, Valid};
 use crate::ids::SessionId;
-use crate::password;
 use crate::session::{self, Session};
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
@@ -110,9 +109,6 @@ async fn change_password(
 ) -> Result<StatusCode> {
     let session = caller.must_be_signed_in()?;
     let user = &caller.user;
-    let company = user.operator_name.as_ref().or(user.firm_name.as_ref());
-    let about = [&user.email, &user.name, company.unwrap_or(&user.name)];
-    password::check("new", &change.new, &about.map(String::as_str))?;
     let is_the_same = change.new == change.current;
     session::confirm_password(&app, &request, user, session, change.current).await?;
     if is_the_same {
@@ -121,7 +117,10 @@ async fn change_password(
             detail: "is your current password".to_owned(),
         });
     }
-    let hash = app.hashing.acquire().await?.hash(change.new).await?;
+    let company = user.operator_name.as_ref().or(user.firm_name.as_ref());
+    let about = [&user.email, &user.name, company.unwrap_or(&user.name)].map(String::as_str);
+    let permit = app.hashing.acquire().await?;
+    let hash = permit.hash_new("new", change.new, &about).await?;
     let mut tx = request.begin().await?;
     session::set_password(&mut tx, user.user_id, &hash).await?;
     session::end_all(&mut tx, user.user_id, Some(session)).await?;

@@ -92,7 +92,9 @@ async fn authenticate(
 ) -> Result<User> {
     // PostgreSQL accepts no NUL in a text, and nobody has such an e-mail address.
     if given.email.chars().any(char::is_control) {
-        request.refuse(Refusal::WrongPassword, None);
+        let (subjects, now) = (Subjects::address(&visitor.from), app.clock.now());
+        throttle::check(request, &subjects, now).await?;
+        throttle::note_failure(request, &subjects, Refusal::WrongPassword, now).await?;
         return Err(Error::WrongPassword);
     }
     let email = normal_email(&given.email);

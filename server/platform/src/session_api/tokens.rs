@@ -28,6 +28,10 @@ where
         .routes(routes!(delete_token))
 }
 
+const DAY_S: f64 = 86_400.0;
+/// Life of a token for which nothing else is asked, days.
+const DAYS_BY_DEFAULT: u32 = 365;
+
 /// Token to be created.
 #[derive(Serialize, Deserialize, ToSchema)]
 #[schema(example = json!({ "name": "Office system", "scope": "write" }))]
@@ -37,8 +41,8 @@ struct NewToken {
     name: String,
     /// Scope of the token.
     scope: Scope,
-    /// Expiry time, at most a year from now unless the server is set up otherwise; one year from now
-    /// by default.
+    /// Expiry time, at most a year from now unless the server is set up otherwise; the latest one
+    /// within a year by default.
     expires_at: Option<Time>,
 }
 
@@ -108,9 +112,10 @@ async fn create_token(
     let request_hash = idempotency::request_hash(&format!("token of {user}"), &new)?;
     let name = crate::http::text("name", &new.name)?;
     let now = app.clock.now();
+    let days = app.config.token_days.min(DAYS_BY_DEFAULT);
     let expires_at = new
         .expires_at
-        .unwrap_or(Time(now.plus_seconds(365.0 * 86_400.0)));
+        .unwrap_or_else(|| Time(now.plus_seconds(f64::from(days) * DAY_S)));
     check_expiry(expires_at, now, app.config.token_days)?;
     let token = format!("{PREFIX}{}", secret::new_token());
     let about = Token {
@@ -137,7 +142,7 @@ async fn create_token(
 }
 
 fn check_expiry(expires_at: Time, now: Timestamp, most_days: u32) -> Result<()> {
-    let last = now.plus_seconds(f64::from(most_days) * 86_400.0);
+    let last = now.plus_seconds(f64::from(most_days) * DAY_S);
     let detail = if expires_at.0 <= now {
         format!("{} is in the past", expires_at.0)
     } else if expires_at.0 > last {
@@ -153,7 +158,8 @@ fn check_expiry(expires_at: Time, now: Timestamp, most_days: u32) -> Result<()> 
 
 /// Revoke an API token
 ///
-/// Things made with it stay, unless you say otherwise.
+/// Things made with it stay, unless you say otherwise. To remove them takes a session, and the role
+/// that may make such things.
 #[utoipa::path(delete, path = "/tokens/{id}", tag = "session",
     params(("id" = TokenId, Path), Revocation),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
@@ -165,11 +171,17 @@ async fn delete_token(
     Params(revocation): Params<Revocation>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
+    let with_made = revocation.with_made == Some(true);
+    if with_made {
+        caller.must_be_signed_in()?;
+        caller.must_change_shared()?;
+    }
     let user = caller.user.user_id;
     let mut tx = request.begin().await?;
-    match revocation.with_made {
-        Some(true) => tokens::delete_with_made(&mut tx, user, id).await?,
-        _ => tokens::delete(&mut tx, user, id).await?,
+    if with_made {
+        tokens::delete_with_made(&mut tx, user, id).await?;
+    } else {
+        tokens::delete(&mut tx, user, id).await?;
     }
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)

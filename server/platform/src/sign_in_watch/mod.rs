@@ -7,6 +7,7 @@ use crate::ids::OperatorId;
 use crate::notices::{DeclaredKind, DefaultMail, Notice, NoticesPublished, Readers};
 use crate::tenants::Tenant;
 use crate::time::Time;
+use binnacle_compass::time::Timestamp;
 use std::time::Duration;
 use tracing::{error, warn};
 
@@ -36,24 +37,38 @@ pub async fn notify_of_many(app: &App) -> Result<usize> {
     let since = Time(now.plus_seconds(-WITHIN_S));
     let notified_before = Time(now.plus_seconds(-NOTIFIED_AGAIN_AFTER_S));
     let attacked = list_attacked(&app.db, since, notified_before).await?;
-    for (operator, refusals) in &attacked {
-        let mut tx = app.db.begin().await?;
-        if !note_notified(&mut tx, *operator, notified_before, now.into()).await? {
-            continue;
+    let mut notified = 0;
+    for (operator, refusals) in attacked {
+        // One operator's notice that fails must not keep it from the others.
+        match notify(app, operator, refusals, now).await {
+            Ok(true) => notified += 1,
+            Ok(false) => {}
+            Err(error) => error!(?error, %operator, "admins cannot be told of refused sign-ins"),
         }
-        let accounts = most_tried(&mut tx, *operator, since).await?;
-        let notice = notice(*refusals, &accounts);
-        tx.publish(&NoticesPublished {
-            tenant: Tenant::Operator(*operator),
-            notices: vec![notice],
-            by: None,
-            at: now.into(),
-        })
-        .await?;
-        tx.commit().await?;
-        warn!(%operator, refusals, "many sign-ins are refused");
     }
-    Ok(attacked.len())
+    Ok(notified)
+}
+
+/// Notifies an operator's admins; false if another process has done it.
+async fn notify(app: &App, operator: OperatorId, refusals: i64, now: Timestamp) -> Result<bool> {
+    let since = Time(now.plus_seconds(-WITHIN_S));
+    let notified_before = Time(now.plus_seconds(-NOTIFIED_AGAIN_AFTER_S));
+    let mut tx = app.db.begin().await?;
+    if !note_notified(&mut tx, operator, notified_before, now.into()).await? {
+        return Ok(false);
+    }
+    let accounts = most_tried(&mut tx, operator, since).await?;
+    let notice = notice(refusals, &accounts);
+    tx.publish(&NoticesPublished {
+        tenant: Tenant::Operator(operator),
+        notices: vec![notice],
+        by: None,
+        at: now.into(),
+    })
+    .await?;
+    tx.commit().await?;
+    warn!(%operator, refusals, "many sign-ins are refused");
+    Ok(true)
 }
 
 /// Looks for many refusals until the server stops.
@@ -79,8 +94,8 @@ fn notice(refusals: i64, tried: &[(String, String, i64)]) -> Notice {
         urgent: true,
         subject: format!("{refusals} sign-ins were refused within an hour"),
         text: format!(
-            "{}\n\nSomebody may be guessing passwords. Whoever signed in before is not locked out \
-             by it. Require a second factor of everyone if you do not yet, and look at the refused \
+            "{}\n\nSomebody may be guessing passwords. A browser in which a user signed in before \
+             is not locked out by it. Require a second factor of everyone if you do not yet, and look at the refused \
              sign-ins in the audit log.",
             tried.join("\n")
         ),

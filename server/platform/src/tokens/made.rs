@@ -53,7 +53,7 @@ impl DomainEvent for RevokedWithMade {}
 
 /// Returns what a user's tokens have made, by token.
 pub(crate) async fn list_made(db: &Db, user: UserId) -> db::Result<Vec<(TokenId, Made)>> {
-    let mut tx = db.begin().await?;
+    let mut tx = db.begin_reading().await?;
     let webhooks = rows!(
         in &mut tx,
         (TokenId, Uuid, String),

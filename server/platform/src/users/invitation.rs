@@ -1,24 +1,25 @@
 //! One-time codes with which users set their password.
 //!
-//! Invariants: a code is stored as a hash and works once, for a week; an hour where someone asked
-//! for it without a session. Its user sets a password and gets no other access; the sign-in follows
-//! with the password. A letter with a code is never stored.
+//! Invariants: a code works once, for a week; an hour where someone asked for it without a session.
+//! Its user sets a password and gets no other access; the sign-in follows with the password.
 
+use super::codes;
+use super::letters::Letter;
 use crate::access::AdminWriter;
 use crate::app::App;
 use crate::audit::{Actor, Refusal, RequestContext};
-use crate::db::{Db, DomainEvent, Tx, execute, row};
+use crate::client_address::Origin;
+use crate::db::{DomainEvent, Tx, row};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, text};
 use crate::ids::{FirmId, OperatorId, UserId};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use crate::{mail, oidc, password, second_factor, secret, session, tokens};
+use crate::{oidc, second_factor, secret, session, tokens};
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
-use std::time::Duration;
-use tracing::warn;
+use tracing::error;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -28,8 +29,6 @@ const VALID_FOR_S: f64 = 7.0 * 86_400.0;
 const VALID_BY_MAIL_S: f64 = 3_600.0;
 /// Time after which another code may be sent to an address, seconds.
 const BETWEEN_LETTERS_S: f64 = 300.0;
-/// Time for the relay to take a letter.
-const RELAY_PATIENCE: Duration = Duration::from_secs(15);
 
 pub(super) fn router<S>() -> OpenApiRouter<S>
 where
@@ -58,8 +57,8 @@ pub struct Invitation {
     link: Option<String>,
     /// Expiry time.
     expires_at: Time,
-    /// True if the server has mailed the link to the user. It has not where mail is not set up, or
-    /// the relay refused the letter.
+    /// True if the server has mailed the link to the user. It has not where mail is not set up, the
+    /// relay refused the letter, or too many were sent today.
     mailed: bool,
 }
 
@@ -97,17 +96,6 @@ struct Accepted {
     name: String,
 }
 
-#[derive(sqlx::FromRow)]
-struct Invited {
-    user_id: UserId,
-    email: String,
-    name: String,
-    operator_id: Option<OperatorId>,
-    firm_id: Option<FirmId>,
-    company: Option<String>,
-    expires_at: Time,
-}
-
 /// Give a user another one-time code
 ///
 /// For a user whose code expired or who forgot the password. The password stays valid until the
@@ -131,7 +119,8 @@ async fn invite_again(
     }
     let invitation = make(&mut tx, &app, id).await?;
     tx.commit().await?;
-    let invitation = invitation.mail_to(&app, id).await?;
+    let by = Some(admin.operator.into());
+    let invitation = invitation.mail_to(&app, id, by).await?;
     Ok((StatusCode::CREATED, Json(invitation)))
 }
 
@@ -144,10 +133,11 @@ async fn invite_again(
     responses((status = 202, description = "A letter is sent if the address has an account"),
               (status = 400, body = Problem),
               (status = 409, description = "Mail is not set up on this server", body = Problem),
-              (status = 422, body = Problem)))]
+              (status = 422, body = Problem), (status = 429, body = Problem)))]
 async fn request_password_reset(
     State(app): State<App>,
     request: RequestContext,
+    from: Origin,
     Valid(forgotten): Valid<Forgotten>,
 ) -> Result<StatusCode> {
     if !app.config.mail.is_set_up() {
@@ -155,28 +145,45 @@ async fn request_password_reset(
         return Err(Error::WrongState(ask.to_owned()));
     }
     let email = session::normal_email(&text("email", &forgotten.email)?);
-    let now: Time = app.clock.now().into();
-    let Some(user) = find_forgetful(&app.db, &email, now).await? else {
-        return Ok(StatusCode::ACCEPTED);
-    };
-    let mut tx = request.begin().await?;
-    let (code, _) = insert(&mut tx, user, now, VALID_BY_MAIL_S).await?;
-    tx.commit().await?;
+    let now = app.clock.now();
+    let permit = app.letters.for_stranger(&from.network(), now)?;
     // Not awaited: the time of the response would say who has an account.
     tokio::spawn(async move {
-        let paragraphs = [
-            &*format!("Someone asked to set a new password for {email} at Binnacle."),
-            "Set it on the page below within an hour. If it was not you, ignore this letter: the \
-             password stays as it is.",
-        ];
-        let letter = Letter {
-            address: &email,
-            subject: "Set a new password",
-            paragraphs: &paragraphs,
-        };
-        letter.send(&app, &code).await;
+        let sent = send_reset(&app, &request, &email, now.into()).await;
+        drop(permit);
+        if let Err(error) = sent {
+            error!(?error, "a code for a new password was not sent");
+        }
     });
     Ok(StatusCode::ACCEPTED)
+}
+
+/// Sends a code to the user of an address, if there is one who may have it.
+async fn send_reset(app: &App, request: &RequestContext, email: &str, now: Time) -> Result<()> {
+    let Some(forgetful) = codes::find_forgetful(&app.db, email).await? else {
+        return Ok(());
+    };
+    let request = request.after_response(Actor::unidentified(forgetful.tenant));
+    let mut tx = request.begin().await?;
+    let expires_at = Time(now.0.plus_seconds(VALID_BY_MAIL_S));
+    let last_before = Time(now.0.plus_seconds(-BETWEEN_LETTERS_S));
+    let user = forgetful.user;
+    let Some(code) = codes::insert_reset(&mut tx, user, last_before, now, expires_at).await? else {
+        return Ok(());
+    };
+    tx.commit().await?;
+    let name = &forgetful.name;
+    let letter = Letter {
+        address: email,
+        subject: "Set a new password",
+        paragraphs: &[
+            &*format!("{name}, someone asked to set a new password for {email} at Binnacle."),
+            "Set it on the page below within an hour. If it was not you, ignore this letter: the \
+             password stays as it is.",
+        ],
+    };
+    letter.send(app, &code).await;
+    Ok(())
 }
 
 /// Set a password with a one-time code
@@ -195,7 +202,7 @@ async fn accept_invitation(
 ) -> Result<Json<Accepted>> {
     let code_hash = secret::hash(&secret::normal_code(&acceptance.code));
     let now = app.clock.now();
-    let Some(invited) = find(&app.db, &code_hash).await? else {
+    let Some(invited) = codes::find(&app.db, &code_hash).await? else {
         request.refuse(Refusal::InvalidCode, None);
         return Err(Error::NotFound("code"));
     };
@@ -205,28 +212,18 @@ async fn accept_invitation(
     }
     let company = invited.company.as_deref().unwrap_or_default();
     let about = [invited.email.as_str(), &invited.name, company];
-    password::check("password", &acceptance.password, &about)?;
-    let hash = app
-        .hashing
-        .acquire()
-        .await?
-        .hash(acceptance.password)
+    let permit = app.hashing.acquire().await?;
+    let hash = permit
+        .hash_new("password", acceptance.password, &about)
         .await?;
     let mut tx = request.begin().await?;
-    let used = execute!(
-        &mut tx,
-        "DELETE FROM invitations WHERE user_id = $1 AND code_hash = $2",
-        invited.user_id,
-        code_hash.as_slice()
-    )?;
-    if used == 0 {
+    if !codes::use_up(&mut tx, invited.user_id, &code_hash).await? {
         return Err(Error::NotFound("code"));
     }
     session::set_password(&mut tx, invited.user_id, &hash).await?;
     end_access(&mut tx, invited.user_id).await?;
-    let tenant = invited.operator_id.map(Tenant::Operator);
-    let tenant = tenant.or(invited.firm_id.map(Tenant::Firm));
-    request.record_actor(Actor::person(invited.user_id, &invited.name, tenant));
+    let actor = Actor::person(invited.user_id, &invited.name, invited.tenant());
+    request.record_actor(actor);
     tx.commit().await?;
     Ok(Json(Accepted {
         email: invited.email,
@@ -237,7 +234,8 @@ async fn accept_invitation(
 /// Creates a code for a user, in place of any earlier one.
 pub(super) async fn make(tx: &mut Tx, app: &App, user: UserId) -> Result<Invitation> {
     let now = app.clock.now();
-    let (code, expires_at) = insert(tx, user, now.into(), VALID_FOR_S).await?;
+    let expires_at = Time(now.plus_seconds(VALID_FOR_S));
+    let code = codes::insert_invitation(tx, user, now.into(), expires_at).await?;
     let at = app.config.mail.public_url.as_deref();
     let link = at.map(|at| format!("{}/invitation#{code}", at.trim_end_matches('/')));
     Ok(Invitation {
@@ -248,42 +246,18 @@ pub(super) async fn make(tx: &mut Tx, app: &App, user: UserId) -> Result<Invitat
     })
 }
 
-/// Letter with a code.
-struct Letter<'a> {
-    address: &'a str,
-    subject: &'a str,
-    paragraphs: &'a [&'a str],
-}
-
-impl Letter<'_> {
-    /// Sends the letter with the page that uses a code; returns whether the relay has taken it.
-    async fn send(&self, app: &App, code: &str) -> bool {
-        let sender = match mail::Sender::new(&app.config.mail) {
-            Ok(Some(sender)) => sender.with_patience(RELAY_PATIENCE),
-            Ok(None) => return false,
-            Err(error) => {
-                warn!(error = format!("{error:#}"), "mail cannot be sent");
-                return false;
-            }
-        };
-        let path = format!("/invitation#{code}");
-        let now = app.clock.now().into();
-        let sent = sender
-            .write(self.address, self.subject, self.paragraphs, &path, now)
-            .await;
-        if let Err(error) = &sent {
-            warn!(
-                error = format!("{error:#}"),
-                "a letter with a code was not sent"
-            );
-        }
-        sent.is_ok()
-    }
-}
-
 impl Invitation {
-    /// Mails the invitation to its user, if mail is set up.
-    pub(super) async fn mail_to(self, app: &App, user: UserId) -> Result<Invitation> {
+    /// Mails the invitation to its user, if mail is set up and the company that invites has not
+    /// invited too many today.
+    pub(super) async fn mail_to(
+        self,
+        app: &App,
+        user: UserId,
+        by: Option<Tenant>,
+    ) -> Result<Invitation> {
+        if !app.letters.may_invite(by, app.clock.now()) {
+            return Ok(self);
+        }
         let found = row!(
             app.db,
             (String, Option<String>),
@@ -296,7 +270,7 @@ impl Invitation {
         let Some((address, company)) = found else {
             return Ok(self);
         };
-        let company = company.map_or(String::new(), |name| format!(" as a user of {name}"));
+        let company = company.map_or(String::new(), |name| format!(" as a user of “{name}”"));
         let paragraphs = [
             &*format!("You are invited to Binnacle{company}. You sign in as {address}."),
             "Set your password on the page below within a week.",
@@ -309,24 +283,6 @@ impl Invitation {
         let mailed = letter.send(app, &self.code).await;
         Ok(Invitation { mailed, ..self })
     }
-}
-
-/// Finds the user of an address who may be sent a code: one who is not disabled, signs in by
-/// password, and was sent none just before.
-async fn find_forgetful(db: &Db, email: &str, now: Time) -> Result<Option<UserId>> {
-    let found = row!(
-        db,
-        (UserId,),
-        "SELECT u.id FROM users u
-         WHERE u.email = $1 AND u.disabled_at IS NULL
-           AND NOT EXISTS (SELECT 1 FROM identities n WHERE n.user_id = u.id)
-           AND NOT EXISTS (SELECT 1 FROM invitations i
-                           WHERE i.user_id = u.id AND i.created_at > $2)
-         ORDER BY u.id",
-        email,
-        Time(now.0.plus_seconds(-BETWEEN_LETTERS_S))
-    )?;
-    Ok(found.map(|(user,)| user))
 }
 
 /// Resets a user: removes password, second factor, sessions, tokens, calendar feeds and the
@@ -357,9 +313,10 @@ pub async fn reset(
     session::set_password(&mut tx, user, "").await?;
     end_access(&mut tx, user).await?;
     second_factor::remove(&mut tx, user).await?;
-    let made = insert(&mut tx, user, now, VALID_FOR_S).await?;
+    let expires_at = Time(now.0.plus_seconds(VALID_FOR_S));
+    let code = codes::insert_invitation(&mut tx, user, now, expires_at).await?;
     tx.commit().await?;
-    Ok(Some(made))
+    Ok(Some((code, expires_at)))
 }
 
 /// End of all access of a user, also of a stolen one.
@@ -378,39 +335,4 @@ async fn end_access(tx: &mut Tx, user: UserId) -> Result<()> {
     tx.publish(&AccessEnded { user }).await?;
     oidc::forget(tx, user).await?;
     Ok(())
-}
-
-async fn insert(tx: &mut Tx, user: UserId, now: Time, valid_for_s: f64) -> Result<(String, Time)> {
-    let code = secret::new_code();
-    let expires_at = Time(now.0.plus_seconds(valid_for_s));
-    execute!(
-        tx,
-        "INSERT INTO invitations (user_id, code_hash, created_at, expires_at)
-         VALUES ($1, $2, $3, $4)
-         ON CONFLICT (user_id) DO UPDATE
-         SET code_hash = excluded.code_hash, created_at = excluded.created_at,
-             expires_at = excluded.expires_at",
-        user,
-        secret::hash(&secret::normal_code(&code)),
-        now,
-        expires_at
-    )?;
-    Ok((code, expires_at))
-}
-
-async fn find(db: &Db, code_hash: &[u8]) -> Result<Option<Invited>> {
-    let found = row!(
-        db,
-        Invited,
-        "SELECT i.user_id, u.email, u.name, u.operator_id, u.firm_id,
-                COALESCE(o.name, f.name) AS company, i.expires_at
-         FROM invitations i
-         JOIN users u ON u.id = i.user_id
-         LEFT JOIN operators o ON o.id = u.operator_id
-         LEFT JOIN firms f ON f.id = u.firm_id
-         WHERE i.code_hash = $1 AND u.disabled_at IS NULL
-         ORDER BY i.user_id",
-        code_hash
-    )?;
-    Ok(found)
 }

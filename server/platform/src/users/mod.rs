@@ -4,10 +4,13 @@
 //! another's password: an admin passes on a one-time code, and the user sets the password.
 //! Disabling a user ends all sessions and tokens at once. A token may change none of this.
 
+mod codes;
 mod invitation;
+mod letters;
 mod store;
 
 pub use invitation::{AccessEnded, Invitation, reset};
+pub use letters::Letters;
 
 use crate::access::{AdminReader, AdminWriter};
 use crate::app::App;
@@ -174,7 +177,7 @@ pub async fn invite(
     request.concerns(tenant);
     if let Some(operator) = tenant.operator() {
         store::lock(&mut tx, operator).await?;
-        if store::has_admin(&mut tx, operator).await? {
+        if store::has_active_admin(&mut tx, operator).await? {
             let has = "the operator has an admin, who invites its other users";
             return Err(Error::WrongState(has.to_owned()));
         }
@@ -184,7 +187,7 @@ pub async fn invite(
     let id = created.await?.ok_or_else(|| has_account(&email))?;
     let invitation = invitation::make(&mut tx, app, id).await?;
     tx.commit().await?;
-    invitation.mail_to(app, id).await
+    invitation.mail_to(app, id, request.tenant()).await
 }
 
 fn has_account(email: &str) -> Error {
@@ -260,7 +263,7 @@ async fn invite_user(
     let user = store::find(&mut tx, admin.operator, id).await?;
     tx.commit().await?;
     let user = user.ok_or(Error::NotFound("user"))?;
-    let invitation = invitation.mail_to(&app, id).await?;
+    let invitation = invitation.mail_to(&app, id, Some(tenant)).await?;
     Ok((StatusCode::CREATED, Json(InvitedUser { user, invitation })))
 }
 

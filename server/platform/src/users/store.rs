@@ -1,6 +1,6 @@
 //! Users of an operator in the database.
 
-use super::{Person, SignInRules};
+use super::{Person, SignInRules, codes};
 use crate::db::{self, Db, Tx, execute, row, rows};
 use crate::error::{Error, Result};
 use crate::ids::{OperatorId, UserId};
@@ -97,6 +97,21 @@ pub(super) async fn must_have_admin(tx: &mut Tx, operator: OperatorId) -> Result
     Ok(())
 }
 
+/// Tells whether an operator has an admin who can sign in, with a password or by a provider.
+pub(super) async fn has_active_admin(tx: &mut Tx, operator: OperatorId) -> db::Result<bool> {
+    let found = row!(
+        in tx,
+        (UserId,),
+        "SELECT u.id FROM users u
+         WHERE u.operator_id = $1 AND u.role = 'admin' AND u.disabled_at IS NULL
+           AND (u.password_hash <> '' OR EXISTS
+                (SELECT 1 FROM identities n WHERE n.user_id = u.id))
+         ORDER BY u.id LIMIT 1",
+        operator
+    )?;
+    Ok(found.is_some())
+}
+
 /// Tells whether an operator has an admin who can sign in with a password.
 pub(super) async fn has_admin(tx: &mut Tx, operator: OperatorId) -> db::Result<bool> {
     let found = row!(
@@ -133,7 +148,7 @@ pub(super) async fn disable(tx: &mut Tx, id: UserId, now: Time) -> db::Result<()
         id,
         now
     )?;
-    execute!(&mut *tx, "DELETE FROM invitations WHERE user_id = $1", id)?;
+    codes::delete_all(tx, id).await?;
     session::end_all(tx, id, None).await
 }
 

@@ -1,8 +1,9 @@
 //! Quotas: shown, set by a platform admin, and held.
 
+use binnacle_compass::time::Timestamp;
 use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::port_calls::{call, path};
-use binnacle_server_testing::{ApiResponse, Engine, Person, TestServer, on_both, passage};
+use binnacle_server_testing::{ApiResponse, DAY_S, Engine, Person, TestServer, on_both, passage};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -62,6 +63,12 @@ async fn what_is_beyond_a_quota_is_refused_with_its_limit(server: TestServer) {
             json!({ "name": "B", "scope": "read" }),
         ),
         ("users", "/users", user(1), user(2)),
+        (
+            "firms",
+            "/firms",
+            json!({ "name": "A" }),
+            json!({ "name": "B" }),
+        ),
     ] {
         let (used, by_default) = quota(&ada, name).await;
         assert!(by_default > used, "{name}");
@@ -73,7 +80,7 @@ async fn what_is_beyond_a_quota_is_refused_with_its_limit(server: TestServer) {
         let problem = refused.json();
         assert_eq!((refused.status, &problem["quota"]), (409, &json!(name)));
         let detail = problem["detail"].as_str().unwrap();
-        assert!(detail.starts_with(&format!("{} ", used + 1)), "{detail}");
+        assert!(detail.contains(&format!(" is {}", used + 1)), "{detail}");
         // Another operator's limit is its own, and the one by default comes back.
         assert_eq!(quota(&eve, name).await.1, by_default);
         assert_eq!(set(&root, &ada, name, json!(null)).await, 204);
@@ -143,6 +150,10 @@ async fn a_token_is_listed_with_what_it_made_and_takes_it_along(server: TestServ
         made.len()
     );
     let path = format!("/tokens/{}?with_made=true", token["id"].as_str().unwrap());
+    // Whoever has the token cannot have what it made removed.
+    let request = server.http.delete(format!("{}/api/v1{path}", server.url));
+    let request = request.bearer_auth(token["token"].as_str().unwrap());
+    assert_eq!(ApiResponse::send(request).await.problem(), "forbidden");
     let revoked = ApiResponse::send(ada.request(Method::DELETE, &path)).await;
     assert_eq!(revoked.status, 204);
     let left = ada.get("/webhooks").await.good();
@@ -164,6 +175,18 @@ async fn a_token_lives_a_year_at_most(server: TestServer) {
     let refused = make("2027-11-22T07:00:01Z").await;
     assert_eq!(refused.problem(), "invalid");
     assert_eq!(refused.json()["errors"][0]["pointer"], "/expires_at");
+    server.finish().await;
+}
+
+#[tokio::test]
+async fn a_token_lives_as_long_as_the_server_lets_it_by_default() {
+    let server = TestServer::start_with(Engine::Sqlite, &["--token-days", "30"]).await;
+    let ada = server.admin("ada").await;
+    let new = json!({ "name": "ERP", "scope": "read" });
+    let made = ada.post("/tokens", &new).await.good();
+    let expires_at: Timestamp = Timestamp::parse(made["expires_at"].as_str().unwrap()).unwrap();
+    let lives_s = expires_at.seconds_since(server.app.clock.now());
+    assert!((lives_s - 30.0 * DAY_S).abs() < 1.0, "{lives_s}");
     server.finish().await;
 }
 

@@ -14,6 +14,7 @@ on_both!(
     each_refused_sign_in_has_an_audit_line,
     a_caller_who_is_turned_away_has_one_audit_line_a_minute,
     what_has_not_the_form_of_an_address_is_not_kept,
+    whatever_a_network_types_it_fills_no_audit_log,
     an_operators_admins_hear_once_of_many_refused_sign_ins,
 );
 
@@ -118,6 +119,29 @@ async fn what_has_not_the_form_of_an_address_is_not_kept(server: TestServer) {
         assert_eq!(refused.problem(), "wrong-password");
     }
     assert_eq!(refusals(&root).await, ["wrong_password - 401"; 3]);
+    server.finish().await;
+}
+
+async fn whatever_a_network_types_it_fills_no_audit_log(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let root = ada.platform_admin(&server).await;
+    let too_long = "x".repeat(1025);
+    for number in 0..80 {
+        let (email, password) = match number % 2 {
+            0 => (format!("{number}\u{7}@example.com"), "a guess"),
+            _ => (format!("{number}@example.com"), too_long.as_str()),
+        };
+        let refused = try_sign_in(&server, &email, password).await;
+        let expected = if number <= 50 {
+            "wrong-password"
+        } else {
+            "throttled"
+        };
+        assert_eq!(refused.problem(), expected, "{number}");
+    }
+    // Those beyond have one line together.
+    let listed = root.get("/audit?refused=true&limit=200").await.good();
+    assert_eq!(listed["items"].as_array().unwrap().len(), 51);
     server.finish().await;
 }
 
