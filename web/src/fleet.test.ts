@@ -7,7 +7,7 @@ import type {
   Urgency,
   WorkOrderState,
 } from './api/types';
-import { pressing, reasonsOf, withDues, worstAhead } from './attention';
+import { pressing, reasonsOf, settledBy, withDues, worstAhead } from './attention';
 import {
   arranged,
   fromSearch,
@@ -279,10 +279,21 @@ describe('who needs someone', () => {
     expect(of('On board').inHand).toMatchObject({ state: 'on_board' });
   });
 
+  it('takes only what is due of the compass in hand to be settled', () => {
+    const steering = { ...need('Nao', 'overdue'), compass_id: 'steering' };
+    const standard = { ...need('Nao', 'soon', order('offered')), compass_id: 'standard' };
+    const late = { ...standard, due_on: '2027-06-01' };
+    const settled = (needs: AdjustmentNeed[]) =>
+      withDues([vessel('Nao')], needs, null).map(settledBy);
+    expect(settled([steering, late])).toEqual([undefined]);
+    expect(settled([standard])).toEqual(['offered']);
+  });
+
   it('lets a new need stand beside an adjustment that is done', () => {
     const again = [need('Offered', 'urgent', order('adjusted'))];
     const [line] = withDues([vessel('Offered')], again, null);
     expect(line?.inHand).toMatchObject({ state: 'adjusted' });
+    expect(line && settledBy(line)).toBeUndefined();
     expect(line && reasonsOf(line)).toMatchObject([{ kind: 'due', urgency: 'urgent' }]);
   });
 

@@ -1,5 +1,7 @@
 /** The fleet's page: map, table, and the views of it. */
 
+import type { OperatorState } from '../orders/order';
+
 export const fleet = {
   title: 'Fleet',
   of: (operator: string) => `Fleet of ${operator}`,
@@ -34,7 +36,7 @@ export const fleet = {
     proposed: 'Answer the firm’s proposal',
     declined: 'No firm took the order: ask another',
     failed: 'Headings at sea contradict the adjustment',
-  } as Record<string, string>,
+  } satisfies Record<OperatorState, string>,
   more: (n: number) => `and ${n} more`,
   acknowledged: 'acknowledged',
   rms: (rms: string) => `residuals ${rms}`,
