@@ -40,7 +40,8 @@ export const alerts = {
     commentMissing: 'Write a comment.',
     say: 'Add the comment',
   },
-  acknowledgeAll: (n: number) => (n === 1 ? 'Acknowledge the alert shown' : `Acknowledge all ${n}`),
+  acknowledgeAll: (n: number, raised: number) =>
+    n === raised ? `Acknowledge all ${n}` : `Acknowledge the first ${n} of ${raised}`,
   acknowledgeAllSure: 'The alerts stay listed, with their causes, as acknowledged.',
   saidAllAcknowledged: (n: number) =>
     n === 1 ? '1 alert is acknowledged.' : `${n} alerts are acknowledged.`,
