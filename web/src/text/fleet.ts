@@ -15,6 +15,7 @@ export const fleet = {
   needing: (n: number) => (n === 1 ? '1 needs attention' : `${n} need attention`),
   duesMissing: (why: string) =>
     `Which compasses are due could not be found out, so that the list may not show all that your vessels need: ${why}`,
+  viewsMissing: (why: string) => `Your saved views could not be found out: ${why}`,
   worst: 'Largest deviation',
   worstHelp: 'By her model, where she was last and at her next port: whichever is larger',
   quality: 'Model',
