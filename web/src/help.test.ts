@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
 import { topics } from 'virtual:help';
-import { passages, type Topic } from './help';
+import { passages, sectionOf, type Topic } from './help';
 
 const section = (id: string, title: string, text: string) => ({ id, title, text });
 const topic = (id: string, title: string, sections: Topic['sections']): Topic => ({
@@ -18,6 +18,11 @@ test('passages have every word sought, and one in a title comes first', () => {
   expect(passages(some, 'Band').map(({ topic }) => topic.id)).toEqual(['alerts', 'cards']);
   expect(passages(some, 'band card').map(({ topic }) => topic.id)).toEqual(['cards']);
   expect(passages(some, ' ')).toEqual([]);
+});
+
+test('a hash names a section, and one written wrongly none', () => {
+  expect(sectionOf('#caf%C3%A9')).toBe('café');
+  expect(sectionOf('#100%')).toBe('100%');
 });
 
 test('no topic names a file of the documents, and every link within the help leads somewhere', () => {

@@ -22,6 +22,15 @@ export interface Passage {
   excerpt: string;
 }
 
+/** The section that an address's hash names; as it stands where it is written wrongly. */
+export function sectionOf(hash: string): string {
+  try {
+    return decodeURIComponent(hash.slice(1));
+  } catch {
+    return hash.slice(1);
+  }
+}
+
 /** So many passages are listed. */
 const mostFound = 20;
 /** So many letters before what was found, and so many in all. */
