@@ -62,9 +62,11 @@ export const start = {
     particulars: 'Particulars',
   },
   todo: {
-    agent: 'Enrol the agent',
+    agent: 'No data yet: see the agent',
     model: 'Waiting for samples',
     adjusted: 'Not known',
+    compass: 'No compass',
+    notAsked: 'Not known yet',
     call: 'Enter port calls',
     particulars: (missing: number) =>
       missing === 1 ? 'Complete 1 fact' : `Complete ${missing} facts`,
