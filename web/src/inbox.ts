@@ -44,7 +44,7 @@ export function matching(
   );
 }
 
-/** What is postponed is not asked for, but where it is asked for. */
+/** What is snoozed is not asked for, but where it is asked for. */
 function isIn(
   state: OpenState | '',
   alert: Alert,
