@@ -69,6 +69,12 @@ function within(href: string, topic: string): string | undefined {
   return to && `/help/${to}${section === undefined ? '' : `#${section}`}`;
 }
 
+/** Without the names of files, which nobody who reads the help has at hand. */
+const unnamed = (words: string): string =>
+  words.replace(/(?<![[(/\w])docs\/([\w-]+)\.md(?:#[\w-]+)?/g, (path, name: string) =>
+    topicOf.has(`${name}.md`) ? `[the help](${path})` : `the ${name} document`,
+  );
+
 function read(topic: string, words: string): Topic {
   const marked = new Marked({
     renderer: {
@@ -85,7 +91,7 @@ function read(topic: string, words: string): Topic {
       image: () => '',
     },
   });
-  const tokens = marked.lexer(words);
+  const tokens = marked.lexer(unnamed(words));
   let title = topic;
   const sections: Topic['sections'] = [{ id: '', title: '', text: '' }];
   for (const token of tokens) {

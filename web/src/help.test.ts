@@ -32,6 +32,11 @@ test('no topic names a file of the documents, and every link within the help lea
       ...sections.filter(({ id }) => id !== '').map((one) => `/help/${id}#${one.id}`),
     ]),
   );
+  const named = topics.flatMap(({ html, sections }) => [
+    ...html.matchAll(/docs\/[\w-]+\.md/g),
+    ...sections.flatMap(({ text }) => [...text.matchAll(/docs\/[\w-]+\.md/g)]),
+  ]);
+  expect(named.map(([name]) => name)).toEqual([]);
   const links = topics.flatMap(({ html }) =>
     [...html.matchAll(/href="(?!https?:)([^"]*)"/g)].map(([, href]) => href ?? ''),
   );
