@@ -75,6 +75,17 @@ const pages = [
     folded: (page) => page.getByText('Advanced: every figure'),
   },
   { name: 'audit', path: '/settings/audit', ready: (page) => page.getByTestId('audit') },
+  {
+    name: 'start',
+    path: '/start',
+    ready: (page) => page.getByTestId('checklist'),
+  },
+  { name: 'help', path: '/help', ready: (page) => page.getByRole('heading', { level: 1 }) },
+  {
+    name: 'help-topic',
+    path: '/help/alerts',
+    ready: (page) => page.getByRole('article').getByRole('heading').first(),
+  },
   { name: 'nothing', path: '/no-such', ready: (page) => page.getByRole('heading', { level: 1 }) },
 ];
 
@@ -90,6 +101,17 @@ async function each({ page, settings, shoot }, look) {
   await page.goto('/');
   await page.getByLabel('E-mail').waitFor();
   found.push(...(await findings(page)).map((line) => `sign in: ${line}`));
+  await page.getByRole('button', { name: 'Forgot your password?' }).click();
+  await page.getByRole('button', { name: 'Send the link' }).waitFor();
+  found.push(...(await findings(page)).map((line) => `forgotten password: ${line}`));
+  await shoot(`page-forgotten-password-${look}`);
+  // As an empty server answers, which another group sets up for good.
+  await page.route('**/api/v1/first-run', (asked) => asked.fulfill({ json: { open: true } }));
+  await page.goto('/');
+  await page.getByLabel('Set-up code').waitFor();
+  found.push(...(await findings(page)).map((line) => `first run: ${line}`));
+  await shoot(`page-first-run-${look}`);
+  await page.unroute('**/api/v1/first-run');
   await signIn(page, settings);
   const vessel = await withModel(page);
   for (const one of pages) {

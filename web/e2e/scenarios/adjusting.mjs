@@ -218,7 +218,20 @@ export const adjusting = {
       await page.getByRole('heading', { name: 'How it was found' }).waitFor();
       const confirm = page.getByRole('button', { name: 'This is how it was found' });
       await confirm.waitFor();
+      const drawn = await page.request.get(
+        `/api/v1/vessels/${vessel.id}/compasses/${vessel.compasses[0].id}/binnacle`,
+      );
+      assert.equal(drawn.status(), 200, await drawn.text());
+      const { fore_and_aft, athwartship, ...iron } = (await drawn.json()).binnacle.setting;
+      const fitted = [...(fore_and_aft ?? []), ...(athwartship ?? [])].concat(
+        Object.values(iron).filter(Boolean),
+      );
+      await page
+        .getByTestId('seen')
+        .nth(fitted.length - 1)
+        .waitFor();
       const lines = await page.getByTestId('seen').all();
+      assert.equal(lines.length, fitted.length);
       if (lines.length > 0) {
         await confirm.click();
         await page.getByText('Tick each corrector that you have looked at').waitFor();
