@@ -85,6 +85,7 @@ export const history = {
   title: 'Deviation over time',
   lead: 'The deviation on each heading, as if the vessel had been at the last position all along. A change of the ship’s magnetism is a step; the shaded bands are 95 %.',
   headings: 'Headings',
+  most: (n: number) => `At most ${n} at once: take one out to draw another.`,
   none: 'No curve yet: it needs a model.',
   noCurve: 'no curve',
   summary: (headings: string, from: string, to: string, steps: number) =>
