@@ -10,6 +10,7 @@ import type {
 import { pressing, reasonsOf, settledBy, withDues, worstAhead } from './attention';
 import {
   arranged,
+  countsOf,
   fromSearch,
   longestSilentFirst,
   quality,
@@ -73,6 +74,15 @@ describe('the fleet', () => {
     expect(names({ search: 'eavn' })).toEqual(['Anna']);
     expect(names({ search: '9074 ber' })).toEqual(['Berta']);
     expect(names({ search: 'anna berta' })).toEqual([]);
+  });
+
+  it('is counted by what the search and the tag find', () => {
+    const tagged = [vessel('Anna', { tags: ['reefer'] }), vessel('Anja'), vessel('Berta')];
+    const all = (query: Partial<typeof usual>) =>
+      countsOf(tagged, { ...usual, filter: 'silent', ...query }, now).all;
+    expect(all({})).toBe(3);
+    expect(all({ search: 'an' })).toBe(2);
+    expect(all({ search: 'an', tag: 'reefer' })).toBe(1);
   });
 
   it('is searched without accents and capitals, on either side', () => {
