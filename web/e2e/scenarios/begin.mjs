@@ -51,7 +51,7 @@ export const begin = {
         .getByTestId('checklist')
         .getByRole('row')
         .filter({ hasText: 'Nao Victoria' });
-      await row.getByText('Not known').waitFor();
+      await row.getByText('Not known', { exact: true }).waitFor();
       await row.getByRole('button', { name: 'Record the date' }).click();
       await row.getByLabel('Day on which Nao Victoria was last adjusted').fill('2025-03-01');
       await row.getByRole('button', { name: 'Record the date', exact: true }).click();
