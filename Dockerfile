@@ -11,6 +11,9 @@ WORKDIR /src/web
 COPY web/package.json web/package-lock.json web/.npmrc ./
 RUN npm ci --no-audit --no-fund
 COPY server/openapi.json ../server/openapi.json
+# The help is made from them.
+COPY docs/ ../docs/
+COPY CHANGELOG.md ../CHANGELOG.md
 COPY web/ ./
 RUN npm run build
 

@@ -6,10 +6,16 @@ import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { Marked, type Tokens } from 'marked';
 import type { Plugin } from 'vite';
-import type { Topic } from '../src/help';
+import type { Searched } from '../src/help';
 
 const id = 'virtual:help';
-const resolved = `\0${id}`;
+const index = `${id}-index`;
+/** So many letters of a topic are shown in the list. */
+const LEAD = 150;
+
+/** A topic as it is made. */
+type Made = Searched & { html: string };
+
 const root = fileURLToPath(new URL('../../', import.meta.url));
 
 /** The topics as they are listed, with their documents. */
@@ -41,16 +47,39 @@ const topicOf = new Map(
 export function help(): Plugin {
   return {
     name: 'binnacle-help',
-    resolveId: (asked) => (asked === id ? resolved : undefined),
+    resolveId: (asked) => (asked.startsWith(id) ? `\0${asked}` : undefined),
     load(asked) {
-      if (asked !== resolved) return undefined;
+      if (!asked.startsWith(`\0${id}`)) return undefined;
       for (const path of Object.values(documents)) this.addWatchFile(root + path);
       const topics = Object.entries(documents).map(([topic, path]) =>
         read(topic, readFileSync(root + path, 'utf8')),
       );
-      return `export const topics = ${JSON.stringify(topics)};`;
+      return moduleOf(asked.slice(1), topics);
     },
   };
+}
+
+/** The list of topics is a file, each one's words are another, and what is searched is a third. */
+function moduleOf(asked: string, topics: Made[]): string {
+  if (asked === index) {
+    const sections = topics.map(({ id, title, sections }) => ({ id, title, sections }));
+    return `export const index = ${JSON.stringify(sections)};`;
+  }
+  if (asked !== id) {
+    const topic = topics.find((one) => asked === `${id}-${one.id}`);
+    return `export const html = ${JSON.stringify(topic?.html ?? '')};`;
+  }
+  const listed = topics.map(({ id: topic, title, sections }) => {
+    const lead =
+      sections
+        .find(({ text }) => text !== '')
+        ?.text.slice(0, LEAD)
+        .trim() ?? '';
+    const load = `() => import('${id}-${topic}').then(({ html }) => html)`;
+    return `{ ...${JSON.stringify({ id: topic, title, lead })}, load: ${load} }`;
+  });
+  return `export const topics = [${listed.join(',')}];
+    export const loadIndex = () => import('${index}').then(({ index }) => index);`;
 }
 
 /** A heading's address, as the documents' own links have it. */
@@ -69,7 +98,13 @@ function within(href: string, topic: string): string | undefined {
   return to && `/help/${to}${section === undefined ? '' : `#${section}`}`;
 }
 
-function read(topic: string, words: string): Topic {
+/** Without the names of files, which nobody who reads the help has at hand. */
+const unnamed = (words: string): string =>
+  words.replace(/(?<![[(/\w])docs\/([\w-]+)\.md(?:#[\w-]+)?/g, (path, name: string) =>
+    topicOf.has(`${name}.md`) ? `[the help](${path})` : `the ${name} document`,
+  );
+
+function read(topic: string, words: string): Made {
   const marked = new Marked({
     renderer: {
       heading({ tokens, depth, text }: Tokens.Heading) {
@@ -85,9 +120,9 @@ function read(topic: string, words: string): Topic {
       image: () => '',
     },
   });
-  const tokens = marked.lexer(words);
+  const tokens = marked.lexer(unnamed(words));
   let title = topic;
-  const sections: Topic['sections'] = [{ id: '', title: '', text: '' }];
+  const sections: Made['sections'] = [{ id: '', title: '', text: '' }];
   for (const token of tokens) {
     if (token.type === 'heading') {
       const { depth, text } = token as Tokens.Heading;

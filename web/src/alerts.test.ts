@@ -1,6 +1,6 @@
 import { render } from 'svelte/server';
 import { describe, expect, test } from 'vitest';
-import { againstCard, inOrder, ofVessel, worstRaised } from './alerts';
+import { againstCard, inOrder, ofVessel, raisedOf } from './alerts';
 import type { Alert } from './api/types';
 import AlertCard from './components/AlertCard.svelte';
 
@@ -62,10 +62,14 @@ describe('the order of alerts', () => {
     expect(ids).toEqual(['critical', 'newer', 'older', 'notice', 'known']);
   });
 
-  test('the badge is as bad as the worst that nobody knows of', () => {
-    expect(worstRaised(list)).toBe('critical');
-    expect(worstRaised(list.slice(0, 2))).toBe('notice');
-    expect(worstRaised(list.slice(0, 1))).toBeNull();
+  test('the badge counts those that nobody knows of, the worst first, none that is snoozed', () => {
+    const now = new Date('2026-11-22T00:00:00Z');
+    const ids = (of: readonly Alert[]) => raisedOf(of, now).map(({ id }) => id);
+    expect(ids(list)).toEqual(['critical', 'newer', 'older', 'notice']);
+    expect(ids(list.slice(0, 1))).toEqual([]);
+    const until = (snoozed_until: string) => [alert('snoozed', { snoozed_until })];
+    expect(ids(until('2026-11-22T00:00:01Z'))).toEqual([]);
+    expect(ids(until('2026-11-21T23:59:59Z'))).toEqual(['snoozed']);
   });
 });
 

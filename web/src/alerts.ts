@@ -5,6 +5,10 @@ import type { Alert, AlertCause, Severity } from './api/types';
 /** From the mildest to the worst. */
 export const severities: readonly Severity[] = ['notice', 'warning', 'critical'];
 
+/** Whether an alert is snoozed at a time. */
+export const isSnoozed = ({ snoozed_until: until }: Alert, now: Date): boolean =>
+  until !== null && Date.parse(until) > now.getTime();
+
 const rank: Record<Severity, number> = { critical: 0, warning: 1, notice: 2 };
 
 /** The order in which someone should see to them. */
@@ -31,11 +35,9 @@ export const againstCard = (alerts: readonly Alert[], compass: string): Alert | 
       compass_id === compass && (cause === 'compass_fault' || cause === 'reported_aboard'),
   );
 
-/** The worst of the alerts that nobody has acknowledged. */
-export function worstRaised(alerts: readonly Alert[]): Severity | null {
-  const first = inOrder(alerts).find((alert) => alert.state === 'raised');
-  return first?.severity ?? null;
-}
+/** Those that nobody has acknowledged or snoozed, the worst first. */
+export const raisedOf = (alerts: readonly Alert[], now: Date): Alert[] =>
+  inOrder(alerts).filter((alert) => alert.state === 'raised' && !isSnoozed(alert, now));
 
 /** Causes that an adjustment cures, or may. */
 const adjusted: AlertCause[] = [

@@ -14,6 +14,7 @@ import type {
   WorkOrderState,
   Worst,
 } from './api/types';
+import { waitsForOperator, type OperatorState } from './orders/order';
 import { grade } from './science/curve';
 
 /** When a vessel's compass is to be adjusted next, the first of hers. */
@@ -30,9 +31,9 @@ export type FleetLine = FleetVessel & {
   /** The first that presses and that no firm was asked for; planned for a day, or for none. */
   unoffered?: (Due & { day: string | null }) | undefined;
   /** An order that waits for the operator. */
-  waiting?: (OpenOrder & { urgency: Urgency }) | undefined;
+  waiting?: (OpenOrder & { state: OperatorState; urgency: Urgency }) | undefined;
   /** An adjustment that is with a firm, being done, or waiting for headings at sea. */
-  inHand?: OpenOrder | undefined;
+  inHand?: (OpenOrder & { compass: string }) | undefined;
 };
 
 /** How far the order of a compass has come. */
@@ -42,8 +43,6 @@ export interface OpenOrder {
   from: string;
 }
 
-/** States in which the next step is the operator's. */
-const waitsForOperator: readonly WorkOrderState[] = ['planned', 'proposed', 'declined', 'failed'];
 /** States in which the work is done, and what comes due afterwards is another need. */
 const workIsDone: readonly WorkOrderState[] = ['adjusted', 'verified'];
 
@@ -65,11 +64,13 @@ export function withDues(
     const hers = known.get(vessel_id) ?? {};
     known.set(vessel_id, hers);
     if (!hers.due || on < hers.due.on) hers.due = due;
-    if (open && waitsForOperator.includes(open.state)) {
-      hers.waiting ??= { ...open, urgency };
+    if (open && waitsForOperator(open.state)) {
+      hers.waiting ??= { ...open, state: open.state, urgency };
       continue;
     }
-    if (open && (!hers.inHand || open.from < hers.inHand.from)) hers.inHand = open;
+    if (open && (!hers.inHand || open.from < hers.inHand.from)) {
+      hers.inHand = { ...open, compass: compass_id };
+    }
     if (open && !workIsDone.includes(open.state)) continue;
     if (urgency !== 'routine' && (!hers.unoffered || on < hers.unoffered.on)) {
       hers.unoffered = { ...due, day: jobs.get(compass_id) ?? null };
@@ -102,8 +103,16 @@ export type Reason =
       more: number;
     }
   | { kind: 'due'; compass: string; urgency: Urgency; on: string; day: string | null; why: string }
-  | ({ kind: 'order'; urgency: Urgency } & OpenOrder)
+  | ({ kind: 'order' } & NonNullable<FleetLine['waiting']>)
   | { kind: 'deviation'; port: string | null };
+
+/** The state of the order that meets what is due first; none where that is not in hand. */
+export function settledBy({ due, inHand }: FleetLine): WorkOrderState | undefined {
+  if (!inHand || inHand.compass !== due?.compass || workIsDone.includes(inHand.state)) {
+    return undefined;
+  }
+  return inHand.state;
+}
 
 /** Why she needs someone, the most pressing first; nothing where she does not. */
 export function reasonsOf(vessel: FleetLine): Reason[] {

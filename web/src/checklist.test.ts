@@ -7,10 +7,9 @@ const vessel = (name: string, more: Partial<FleetVessel> = {}) =>
     ...{ id: name, name, imo_number: null, last_upload_at: null, model: null, next_call: null },
     ...more,
   }) as FleetVessel;
-const need = (vessel_id: string, adjusted_on: string | null) =>
+const need = (vessel_id: string, adjusted_on: string | null, compass_name = 'Standard') =>
   ({
-    vessel_id,
-    compass_id: `c-${vessel_id}`,
+    ...{ vessel_id, compass_id: `${vessel_id} ${compass_name}`, compass_name },
     adjusted_on,
     not_known: ['trade'],
   }) as unknown as AdjustmentNeed;
@@ -21,8 +20,8 @@ describe('the checklist', () => {
   test('says of a vessel just entered that everything is left to do', () => {
     const [nao] = checklist([vessel('Nao')], [need('Nao', null)]);
     expect(nao).toEqual({
-      ...{ id: 'Nao', name: 'Nao', compass: 'c-Nao', missing: 1 },
-      ...{ agent: false, model: false, adjusted: null, call: false },
+      ...{ id: 'Nao', name: 'Nao', missing: 1, agent: false, model: false, call: false },
+      compasses: [{ id: 'Nao Standard', name: 'Standard', adjusted: null }],
     });
     expect(nao && isLive(nao)).toBe(false);
   });
@@ -37,6 +36,20 @@ describe('the checklist', () => {
       checklist([sailing], [need('Nao', adjusted)]).map(isLive);
     expect(live('2025-03-01')).toEqual([true]);
     expect(live(null)).toEqual([false]);
+  });
+
+  test('asks for each compass, and counts a fact of the vessel once', () => {
+    const needs = [need('Nao', '2025-03-01', 'Steering'), need('Nao', null, 'Standard')];
+    const [nao] = checklist([vessel('Nao')], needs);
+    expect(nao?.compasses.map(({ name, adjusted }) => [name, adjusted])).toEqual([
+      ['Standard', null],
+      ['Steering', '2025-03-01'],
+    ]);
+    expect(nao?.missing).toBe(1);
+  });
+
+  test('does not call complete what no rule has asked for yet', () => {
+    expect(checklist([vessel('Nao')], [])).toMatchObject([{ compasses: [], missing: null }]);
   });
 });
 

@@ -27,6 +27,21 @@ test('the file has a line for each vessel, and a name stays one field and no for
   expect(second).toMatch(/^'=1\+1,/);
 });
 
+test('each kind of reason has its word, and a call without a port name its code', () => {
+  const due = { compass: 'c', on: '2026-12-01', urgency: 'overdue', reason: '', day: null };
+  const all = {
+    ...vessel('Nao'),
+    alert: { id: 'a', severity: 'critical', cause: 'drift', summary: '', state: 'raised' },
+    unoffered: due,
+    waiting: { order: 'o', state: 'declined', from: '2026-12-01', urgency: 'urgent' },
+    next_call: { port: 'NLRTM', port_name: '', eta: 'then', etd: 'later', worst: null },
+  } as unknown as FleetLine;
+  const [, line] = fleetCsv([all]).split('\r\n');
+  const words = line?.split(',')[4]?.split(' ').sort();
+  expect(words).toEqual(['adjustment_overdue', 'drift', 'large_deviation', 'order_declined']);
+  expect(line).toContain(',NLRTM,then,later,');
+});
+
 test('what is left out is kept in the browser, and what is unknown there is ignored', () => {
   const kept = new Map<string, string>();
   const store = {

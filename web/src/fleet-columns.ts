@@ -1,6 +1,6 @@
 /** The columns of the fleet's table that can be left out, and the table as a CSV file. Pure. */
 
-import { reasonsOf, worstAhead, type FleetLine } from './attention';
+import { reasonsOf, worstAhead, type FleetLine, type Reason } from './attention';
 import { sorts, type Sort } from './fleet';
 
 /** The name is always there. */
@@ -50,19 +50,25 @@ export function fleetCsv(vessels: readonly FleetLine[]): string {
       ...[ahead?.worst.deviation_deg, ahead?.worst.compass_deg, ahead?.worst.band95_deg],
       ...[ahead?.port, vessel.model?.rms_deg, vessel.last_upload_at],
       ...[due?.urgency === 'unknown' ? '' : due?.on, due?.urgency, vessel.inHand?.state],
-      ...[call?.port_name ?? call?.port, call?.eta, call?.etd],
+      ...[call ? call.port_name || call.port : undefined, call?.eta, call?.etd],
       ...[position?.lat, position?.lon, position?.at],
     ];
   });
   return [head, ...lines].map((line) => `${line.map(field).join(',')}\r\n`).join('');
 }
 
-const wordOf = (reason: ReturnType<typeof reasonsOf>[number]): string =>
-  reason.kind === 'alert'
-    ? reason.cause
-    : reason.kind === 'due'
-      ? `adjustment_${reason.urgency}`
-      : 'large_deviation';
+function wordOf(reason: Reason): string {
+  switch (reason.kind) {
+    case 'alert':
+      return reason.cause;
+    case 'due':
+      return `adjustment_${reason.urgency}`;
+    case 'order':
+      return `order_${reason.state}`;
+    case 'deviation':
+      return 'large_deviation';
+  }
+}
 
 /** As RFC 4180 has it; what a spreadsheet would run as a formula begins with an apostrophe. */
 function field(value: string | number | null | undefined): string {

@@ -7,9 +7,10 @@ import type {
   Urgency,
   WorkOrderState,
 } from './api/types';
-import { pressing, reasonsOf, withDues, worstAhead } from './attention';
+import { pressing, reasonsOf, settledBy, withDues, worstAhead } from './attention';
 import {
   arranged,
+  countsOf,
   fromSearch,
   longestSilentFirst,
   quality,
@@ -73,6 +74,15 @@ describe('the fleet', () => {
     expect(names({ search: 'eavn' })).toEqual(['Anna']);
     expect(names({ search: '9074 ber' })).toEqual(['Berta']);
     expect(names({ search: 'anna berta' })).toEqual([]);
+  });
+
+  it('is counted by what the search and the tag find', () => {
+    const tagged = [vessel('Anna', { tags: ['reefer'] }), vessel('Anja'), vessel('Berta')];
+    const all = (query: Partial<typeof usual>) =>
+      countsOf(tagged, { ...usual, filter: 'silent', ...query }, now).all;
+    expect(all({})).toBe(3);
+    expect(all({ search: 'an' })).toBe(2);
+    expect(all({ search: 'an', tag: 'reefer' })).toBe(1);
   });
 
   it('is searched without accents and capitals, on either side', () => {
@@ -279,10 +289,21 @@ describe('who needs someone', () => {
     expect(of('On board').inHand).toMatchObject({ state: 'on_board' });
   });
 
+  it('takes only what is due of the compass in hand to be settled', () => {
+    const steering = { ...need('Nao', 'overdue'), compass_id: 'steering' };
+    const standard = { ...need('Nao', 'soon', order('offered')), compass_id: 'standard' };
+    const late = { ...standard, due_on: '2027-06-01' };
+    const settled = (needs: AdjustmentNeed[]) =>
+      withDues([vessel('Nao')], needs, null).map(settledBy);
+    expect(settled([steering, late])).toEqual([undefined]);
+    expect(settled([standard])).toEqual(['offered']);
+  });
+
   it('lets a new need stand beside an adjustment that is done', () => {
     const again = [need('Offered', 'urgent', order('adjusted'))];
     const [line] = withDues([vessel('Offered')], again, null);
     expect(line?.inHand).toMatchObject({ state: 'adjusted' });
+    expect(line && settledBy(line)).toBeUndefined();
     expect(line && reasonsOf(line)).toMatchObject([{ kind: 'due', urgency: 'urgent' }]);
   });
 

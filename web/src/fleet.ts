@@ -36,19 +36,31 @@ const dayMs = 86_400_000;
 
 /** The vessels that a query asks for, in its order; equals by name. */
 export function arranged(vessels: readonly FleetLine[], query: Query, now: Date): FleetLine[] {
-  const words = plainly(query.search).split(/\s+/).filter(Boolean);
   const sign = query.reversed ? -1 : 1;
-  return vessels
-    .filter((vessel) => query.tag === '' || vessel.tags.includes(query.tag))
-    .filter((vessel) => passes(vessel, query.filter, now) && says(vessel, words))
+  return named(vessels, query)
+    .filter((vessel) => passes(vessel, query.filter, now))
     .sort((a, b) => sign * compare(a, b, query.sort) || byName(a, b));
 }
 
-/** How many vessels each filter finds. */
-export const countsOf = (vessels: readonly FleetLine[], now: Date): Record<Filter, number> =>
-  Object.fromEntries(
-    filters.map((filter) => [filter, vessels.filter((one) => passes(one, filter, now)).length]),
+/** How many vessels each filter finds among those with the words and the tag asked for. */
+export function countsOf(
+  vessels: readonly FleetLine[],
+  query: Query,
+  now: Date,
+): Record<Filter, number> {
+  const among = named(vessels, query);
+  return Object.fromEntries(
+    filters.map((filter) => [filter, among.filter((one) => passes(one, filter, now)).length]),
   ) as Record<Filter, number>;
+}
+
+/** Those with the words and the tag that a query asks for. */
+function named(vessels: readonly FleetLine[], { search, tag }: Query): FleetLine[] {
+  const words = plainly(search).split(/\s+/).filter(Boolean);
+  return vessels.filter(
+    (vessel) => (tag === '' || vessel.tags.includes(tag)) && says(vessel, words),
+  );
+}
 
 function says(vessel: FleetVessel, words: string[]): boolean {
   const hay = plainly([vessel.name, vessel.imo_number, vessel.call_sign].join(' '));

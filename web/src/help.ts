@@ -2,11 +2,20 @@
 
 import { plainly } from './plainly';
 
+/** A topic as it is listed. */
 export interface Topic {
   id: string;
   title: string;
-  /** Made from our own documents when the dashboard is built. */
-  html: string;
+  /** How it begins. */
+  lead: string;
+  /** The topic as HTML, made from our own documents when the dashboard is built. */
+  load: () => Promise<string>;
+}
+
+/** A topic as it is searched. */
+export interface Searched {
+  id: string;
+  title: string;
   sections: {
     /** Empty for what comes before the first heading. */
     id: string;
@@ -16,10 +25,19 @@ export interface Topic {
 }
 
 export interface Passage {
-  topic: Topic;
-  section: Topic['sections'][number];
+  topic: Searched;
+  section: Searched['sections'][number];
   /** The words around the first one found. */
   excerpt: string;
+}
+
+/** The section that an address's hash names; as it stands where it is written wrongly. */
+export function sectionOf(hash: string): string {
+  try {
+    return decodeURIComponent(hash.slice(1));
+  } catch {
+    return hash.slice(1);
+  }
 }
 
 /** So many passages are listed. */
@@ -28,7 +46,7 @@ const mostFound = 20;
 const [before, length] = [60, 220];
 
 /** The passages with every word sought, those with one in a title first. */
-export function passages(topics: readonly Topic[], query: string): Passage[] {
+export function passages(topics: readonly Searched[], query: string): Passage[] {
   const words = plainly(query)
     .split(/\s+/)
     .filter((word) => word !== '');

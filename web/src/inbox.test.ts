@@ -7,6 +7,7 @@ import {
   fromInboxSearch,
   matching,
   toInboxSearch,
+  type InboxQuery,
 } from './inbox';
 
 const alert = (over: Partial<Alert>): Alert =>
@@ -17,6 +18,8 @@ const alert = (over: Partial<Alert>): Alert =>
     cause: 'drift',
     severity: 'warning',
     state: 'raised',
+    assigned_to: null,
+    snoozed_until: null,
     ...over,
   }) as Alert;
 
@@ -25,8 +28,9 @@ const inbox = [
   alert({ id: 'struck', cause: 'lightning_or_shock', severity: 'critical', state: 'acknowledged' }),
   alert({ id: 'quiet', cause: 'silent_agent', severity: 'notice', vessel_name: 'Almirante Señal' }),
 ];
+const reader = { me: 'officer', now: new Date('2026-11-22T00:00:00Z') };
 const found = (query: Partial<typeof everyAlert>) =>
-  matching(inbox, { ...everyAlert, ...query }).map(({ id }) => id);
+  matching(inbox, { ...everyAlert, ...query }, reader).map(({ id }) => id);
 
 describe('the inbox', () => {
   it('is whole unless something is asked for, and keeps its order', () => {
@@ -45,7 +49,21 @@ describe('the inbox', () => {
 
   it('asks what is over for no state', () => {
     const over = [alert({ state: 'cleared' })];
-    expect(matching(over, { ...everyAlert, state: 'raised' })).toEqual(over);
+    expect(matching(over, { ...everyAlert, state: 'raised' }, reader)).toEqual(over);
+  });
+
+  it('asks for those of the reader, and for snoozed ones only by that name', () => {
+    const some = [
+      alert({ id: 'mine', assigned_to: 'officer' }),
+      alert({ id: 'theirs', assigned_to: 'master' }),
+      alert({ id: 'later', assigned_to: 'officer', snoozed_until: '2026-11-22T00:00:01Z' }),
+      alert({ id: 'awake', snoozed_until: '2026-11-21T23:59:59Z' }),
+    ];
+    const ids = (state: InboxQuery['state']) =>
+      matching(some, { ...everyAlert, state }, reader).map(({ id }) => id);
+    expect(ids('mine')).toEqual(['mine']);
+    expect(ids('snoozed')).toEqual(['later']);
+    expect(ids('')).toEqual(['mine', 'theirs', 'awake']);
   });
 
   it('stays in the order in which it stood, what is new after what it follows', () => {

@@ -4,7 +4,7 @@
  */
 
 import type { Alert, AlertCause, Severity } from './api/types';
-import { severities } from './alerts';
+import { isSnoozed, severities } from './alerts';
 import { plainly } from './plainly';
 import * as text from './text';
 
@@ -28,7 +28,7 @@ export const openStates: readonly OpenState[] = states;
 export function matching(
   alerts: readonly Alert[],
   query: InboxQuery,
-  reader: { me: string; now: Date } = { me: '', now: new Date(0) },
+  reader: { me: string; now: Date },
 ): Alert[] {
   const words = plainly(query.search).split(/\s+/).filter(Boolean);
   const says = (alert: Alert) => {
@@ -44,11 +44,7 @@ export function matching(
   );
 }
 
-/** Whether an alert is postponed at a time. */
-export const isSnoozed = ({ snoozed_until: until }: Alert, now: Date): boolean =>
-  until !== null && Date.parse(until) > now.getTime();
-
-/** What is postponed is not asked for, but where it is asked for. */
+/** What is snoozed is not asked for, but where it is asked for. */
 function isIn(
   state: OpenState | '',
   alert: Alert,

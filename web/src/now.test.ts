@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import type { AdjustmentNeed, Alert, Vessel, WorkOrderSummary } from './api/types';
-import { nowFor, type Known } from './now';
+import { nowFor, type Asked } from './now';
 
 const vessel = {
   id: 'v',
@@ -16,6 +16,7 @@ const alert = (cause: Alert['cause'], severity: Alert['severity']) =>
     cause,
     severity,
     state: 'raised',
+    snoozed_until: null,
     since: '2026-11-19T00:00:00Z',
     advice: 'order an adjustment',
   }) as Alert;
@@ -30,16 +31,17 @@ const need = (urgency: AdjustmentNeed['urgency']) =>
     reason: 'a year has passed',
   }) as AdjustmentNeed;
 
-const known = (of: Partial<Known>): Known => ({
+const known = (of: Partial<Asked>): Asked => ({
   vessel,
   alerts: [],
   needs: [],
   orders: [],
+  now: new Date('2026-11-22T00:00:00Z'),
   writes: true,
   at: (instant) => instant,
   ...of,
 });
-const first = (of: Partial<Known>) => nowFor(known(of)).ways[0]?.path;
+const first = (of: Partial<Asked>) => nowFor(known(of)).ways[0]?.path;
 
 describe('what to do now', () => {
   test('after a strike is to order an adjustment, with the curves before and after beside it', () => {
@@ -65,6 +67,30 @@ describe('what to do now', () => {
     expect(first({ vessel: { ...vessel, last_upload_at: null } })).toBe('/vessels/v/agent');
     const nothing = nowFor(known({ needs: [need('routine')] }));
     expect(nothing).toMatchObject({ tone: 'good', ways: [] });
+  });
+
+  test('is not known while alerts, due dates or orders are missing', () => {
+    for (const part of ['alerts', 'needs', 'orders']) {
+      const now = nowFor(known({ [part]: undefined }));
+      expect(now).toMatchObject({ tone: 'plain', title: 'Not known yet', ways: [] });
+    }
+  });
+
+  test('leaves out an alert while it is snoozed, and says that there is one', () => {
+    const snoozed = (until: string) => [
+      { ...alert('drift', 'critical'), snoozed_until: until } as Alert,
+    ];
+    const now = nowFor(known({ alerts: snoozed('2026-11-23T00:00:00Z') }));
+    expect(now.tone).toBe('good');
+    expect(now.why).toMatch(/^One alert is snoozed\. No alert asks/);
+    expect(nowFor(known({ alerts: snoozed('2026-11-21T00:00:00Z') })).tone).toBe('bad');
+  });
+
+  test('is to record the last adjustment where none is, without a date that moves each day', () => {
+    const now = nowFor(known({ needs: [need('unknown')] }));
+    expect(now).toMatchObject({ title: 'No adjustment on record', tone: 'plain' });
+    expect(now.ways.map(({ path }) => path)).toEqual(['/start']);
+    expect(first({ needs: [need('unknown'), need('overdue')] })).toMatch(/^\/work-orders\/new/);
   });
 
   test('offers no order to who may not write', () => {

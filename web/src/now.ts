@@ -5,15 +5,16 @@
  * of another kind before it. Nothing to do is an answer too.
  */
 
-import { callsForAdjustment } from './alerts';
+import { callsForAdjustment, isSnoozed } from './alerts';
 import type { AdjustmentNeed, Alert, Vessel, WorkOrderSummary } from './api/types';
 import { day, sentence } from './format';
-import { isOpen, mayBeClosed, mayBeOffered, stateName, whatNext } from './orders/order';
+import { isOpen, stateName, waitsForOperator, whatNext } from './orders/order';
 import {
   alertPath,
   changePath,
   newWorkOrderPath,
   plannedPath,
+  startPath,
   vesselTabPath,
   workOrderPath,
 } from './state/route.svelte';
@@ -34,16 +35,22 @@ export interface Now {
 
 export interface Known {
   vessel: Vessel;
-  /** The vessel's open alerts, the worst first. */
+  /** The vessel's open alerts, the worst first; snoozed ones are left out. */
   alerts: readonly Alert[];
   needs: readonly AdjustmentNeed[];
   /** The next one first. */
   orders: readonly WorkOrderSummary[];
+  now: Date;
   /** Whether the reader may order and enrol. */
   writes: boolean;
   /** How instants in the server's sentences are written. */
   at: (instant: string) => string;
 }
+
+/** What is asked for; a part that has not come yet is not known. */
+export type Asked = Omit<Known, 'alerts' | 'needs' | 'orders'> & {
+  [part in 'alerts' | 'needs' | 'orders']: Known[part] | undefined;
+};
 
 const t = () => text.now;
 
@@ -64,8 +71,15 @@ export const toChange = (alert: Alert): Way => ({
   path: changePath(alert.vessel_id, alert.compass_id, alert.since),
 });
 
-export function nowFor(known: Known): Now {
-  const { vessel, alerts, needs, orders } = known;
+/** Says that nothing is known rather than that all is well while a part is missing. */
+export function nowFor({ alerts, needs, orders, ...rest }: Asked): Now {
+  if (!alerts || !needs || !orders) return way('plain', t().unknown, t().unknownWhy);
+  return ofKnown({ ...rest, alerts, needs, orders });
+}
+
+function ofKnown(known: Known): Now {
+  const { vessel, needs, orders, now } = known;
+  const alerts = known.alerts.filter((alert) => !isSnoozed(alert, now));
   const order = orders.find(({ state }) => isOpen(state));
   const pressing = alerts.find(({ severity }) => severity !== 'notice');
   if (pressing?.severity === 'critical' && !callsForAdjustment(pressing)) {
@@ -73,21 +87,26 @@ export function nowFor(known: Known): Now {
   }
   if (order) return ofOrder(order);
   if (pressing) return ofAlert(pressing, known);
-  const due = [...needs].sort((a, b) => a.due_on.localeCompare(b.due_on))[0];
+  // Without an adjustment on record the day on which one is due moves with the calendar.
+  const due = needs
+    .filter(({ urgency }) => urgency !== 'unknown')
+    .sort((a, b) => a.due_on.localeCompare(b.due_on))[0];
   if (due && (due.urgency === 'overdue' || due.urgency === 'urgent')) return ofDue(due, known);
-  if (vessel.compasses.length > 0 && !vessel.last_upload_at) return notEnrolled(known);
+  if (vessel.compasses.length > 0 && !vessel.last_upload_at) return noData(known);
   if (!vessel.model) {
     const path = vesselTabPath(vessel.id, 'agent');
     return way('plain', t().noModel, t().noModelWhy, { label: t().toAgent, path });
   }
   const notice = alerts[0];
   if (notice) return ofAlert(notice, known);
-  return {
-    tone: 'good',
-    title: t().nothing,
-    why: due ? t().dueLater(day(due.due_on)) : t().nothingDue,
-    ways: [],
-  };
+  const unrecorded = needs.find(({ urgency }) => urgency === 'unknown');
+  if (unrecorded) return notRecorded(unrecorded);
+  const snoozed = known.alerts.length;
+  const why = [
+    ...(snoozed > 0 ? [t().snoozed(snoozed)] : []),
+    due ? t().dueLater(day(due.due_on)) : t().nothingDue,
+  ];
+  return way('good', t().nothing, why.join(' '));
 }
 
 const way = (tone: Now['tone'], title: string, why: string, ...ways: Way[]): Now => ({
@@ -116,8 +135,7 @@ function ofAlert(alert: Alert, { orders, writes, at }: Known): Now {
 }
 
 function ofOrder({ id, state, port, planned_at: at }: WorkOrderSummary): Now {
-  const asksUs = state === 'proposed' || mayBeOffered(state) || mayBeClosed(state);
-  const tone = state === 'failed' ? 'bad' : asksUs ? 'notable' : 'plain';
+  const tone = state === 'failed' ? 'bad' : waitsForOperator(state) ? 'notable' : 'plain';
   const title = t().order(stateName(state), port, day(at));
   return way(tone, title, whatNext(state), { label: t().openOrder, path: workOrderPath(id) });
 }
@@ -134,8 +152,12 @@ function ofDue(due: AdjustmentNeed, { writes }: Known): Now {
   return way(overdue ? 'bad' : 'notable', title, sentence(due.reason), ...ways);
 }
 
-function notEnrolled({ vessel, writes }: Known): Now {
-  const path = vesselTabPath(vessel.id, 'agent');
-  const label = writes ? text.enrol.title : t().toAgent;
-  return way('notable', t().noAgent, t().noAgentWhy, { label, path });
-}
+/** An agent that was enrolled and has sent nothing yet is known from none by its own page alone. */
+const noData = ({ vessel }: Known): Now =>
+  way('notable', t().noAgent, t().noAgentWhy, {
+    label: t().toAgent,
+    path: vesselTabPath(vessel.id, 'agent'),
+  });
+
+const notRecorded = ({ reason }: AdjustmentNeed): Now =>
+  way('plain', t().notRecorded, sentence(reason), { label: t().toStart, path: startPath });

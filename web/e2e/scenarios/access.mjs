@@ -29,7 +29,7 @@ async function anOrder(vessel, page) {
   return `/work-orders/${(await made.json()).id}`;
 }
 
-/** Each page, and what shows that it is there. */
+/** Each page, what shows that it is there, and what opens the rest of it. */
 const pages = [
   { name: 'fleet', path: '/', ready: (page) => page.getByRole('rowheader').first() },
   { name: 'alerts', path: '/alerts', ready: (page) => page.getByRole('heading', { level: 1 }) },
@@ -71,22 +71,52 @@ const pages = [
   {
     name: 'schedule-rules',
     path: '/settings/schedule',
-    ready: (page) => page.getByLabel('Hours that a job takes on board'),
+    ready: (page) => page.getByRole('slider').first(),
+    folded: (page) => page.getByText('Advanced: every figure'),
   },
   { name: 'audit', path: '/settings/audit', ready: (page) => page.getByTestId('audit') },
+  {
+    name: 'start',
+    path: '/start',
+    ready: (page) => page.getByTestId('checklist'),
+  },
+  { name: 'help', path: '/help', ready: (page) => page.getByRole('heading', { level: 1 }) },
+  {
+    name: 'help-topic',
+    path: '/help/alerts',
+    ready: (page) => page.getByRole('article').getByRole('heading').first(),
+  },
   { name: 'nothing', path: '/no-such', ready: (page) => page.getByRole('heading', { level: 1 }) },
 ];
+
+/** Goes to a page and opens what is folded there. */
+async function open(page, { path, ready, folded }, vessel) {
+  await page.goto(typeof path === 'string' ? path : await path(vessel, page));
+  await ready(page).waitFor();
+  await folded?.(page).click();
+}
 
 async function each({ page, settings, shoot }, look) {
   const found = [];
   await page.goto('/');
   await page.getByLabel('E-mail').waitFor();
   found.push(...(await findings(page)).map((line) => `sign in: ${line}`));
+  await page.getByRole('button', { name: 'Forgot your password?' }).click();
+  await page.getByRole('button', { name: 'Send the link' }).waitFor();
+  found.push(...(await findings(page)).map((line) => `forgotten password: ${line}`));
+  await shoot(`page-forgotten-password-${look}`);
+  // As an empty server answers, which another group sets up for good.
+  await page.route('**/api/v1/first-run', (asked) => asked.fulfill({ json: { open: true } }));
+  await page.goto('/');
+  await page.getByLabel('Set-up code').waitFor();
+  found.push(...(await findings(page)).map((line) => `first run: ${line}`));
+  await shoot(`page-first-run-${look}`);
+  await page.unroute('**/api/v1/first-run');
   await signIn(page, settings);
   const vessel = await withModel(page);
-  for (const { name, path, ready, drawn } of pages) {
-    await page.goto(typeof path === 'string' ? path : await path(vessel, page));
-    await ready(page).waitFor();
+  for (const one of pages) {
+    const { name, drawn } = one;
+    await open(page, one, vessel);
     // Charts are drawn when they are near, or for paper.
     await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
     await drawn?.(page).waitFor();
@@ -155,13 +185,14 @@ async function noneScrolls({ page, settings }) {
   await signIn(page, settings);
   const vessel = await withModel(page);
   const wide = [];
-  for (const { name, path, ready } of pages) {
-    await page.goto(typeof path === 'string' ? path : await path(vessel, page));
-    await ready(page).waitFor();
+  for (const one of pages) {
+    await open(page, one, vessel);
     for (const width of widths) {
       await page.setViewportSize({ width, height: 900 });
       await drawn(page);
-      await fitsItsWidth(page).catch(({ message }) => wide.push(`${name} at ${width}: ${message}`));
+      await fitsItsWidth(page).catch(({ message }) =>
+        wide.push(`${one.name} at ${width}: ${message}`),
+      );
     }
   }
   assert.deepEqual(wide, []);

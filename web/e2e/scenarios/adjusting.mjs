@@ -208,7 +208,7 @@ export const adjusting = {
     async run({ page, context, settings, shoot }) {
       await signIn(page, settings);
       const vessel = await calm(page);
-      const { id } = await orderOf(page, vessel);
+      const { id, compass_id } = await orderOf(page, vessel);
       const field = await fieldAtBerth(page, vessel.id);
       // The page is kept by the browser from now on.
       await page.evaluate(() => navigator.serviceWorker.ready.then(() => undefined));
@@ -218,7 +218,19 @@ export const adjusting = {
       await page.getByRole('heading', { name: 'How it was found' }).waitFor();
       const confirm = page.getByRole('button', { name: 'This is how it was found' });
       await confirm.waitFor();
+      const drawn = await page.request.get(
+        `/api/v1/vessels/${vessel.id}/compasses/${compass_id}/binnacle/revisions?limit=1`,
+      );
+      assert.equal(drawn.status(), 200, await drawn.text());
+      const [{ binnacle }] = (await drawn.json()).items;
+      const { fore_and_aft, athwartship, ...iron } = binnacle.setting;
+      const fitted = [...(fore_and_aft ?? []), ...(athwartship ?? [])].concat(
+        Object.values(iron).filter(Boolean),
+      );
+      const last = page.getByTestId('seen').nth(fitted.length - 1);
+      if (fitted.length > 0) await last.waitFor();
       const lines = await page.getByTestId('seen').all();
+      assert.equal(lines.length, fitted.length);
       if (lines.length > 0) {
         await confirm.click();
         await page.getByText('Tick each corrector that you have looked at').waitFor();

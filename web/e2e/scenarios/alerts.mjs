@@ -355,6 +355,30 @@ export const alerts = {
     },
   },
 
+  'a link to a change shows its curves, from another tab of the same page too': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      const vessel = await struck(page);
+      const found = await page.request.get(`/api/v1/vessels/${vessel.id}/changes`);
+      const { changes, compass_id: compass } = await found.json();
+      const { from } = changes.find((change) => change.cause === 'lightning_or_shock');
+      const named = new URLSearchParams({ compass, change: from });
+      await goToVessel(page, vessel.id);
+      await page.evaluate((path) => {
+        window.stayed = true;
+        const link = Object.assign(document.createElement('a'), { href: path });
+        document.querySelector('main').append(link);
+        link.click();
+        link.remove();
+      }, `/vessels/${vessel.id}/changes?${named}#changes`);
+      const changed = page.getByRole('region', { name: 'What changed' });
+      await changed.getByRole('button', { name: 'Hide the curve' }).waitFor();
+      await changed.getByTestId('compared-chart').waitFor();
+      assert.ok(await page.evaluate(() => window.stayed), 'the page was not loaded anew');
+    },
+  },
+
   'a ship to whom nothing happened says since when': {
     allowedErrors: [notSignedIn],
     async run({ page, settings, shoot }) {

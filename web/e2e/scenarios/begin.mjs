@@ -51,12 +51,12 @@ export const begin = {
         .getByTestId('checklist')
         .getByRole('row')
         .filter({ hasText: 'Nao Victoria' });
-      await row.getByText('Not known').waitFor();
+      await row.getByText('Not known', { exact: true }).waitFor();
       await row.getByRole('button', { name: 'Record the date' }).click();
       await row.getByLabel('Day on which Nao Victoria was last adjusted').fill('2025-03-01');
       await row.getByRole('button', { name: 'Record the date', exact: true }).click();
       await row.getByText('1 Mar 2025').waitFor();
-      await row.getByRole('link', { name: 'Enrol the agent' }).waitFor();
+      await row.getByRole('link', { name: 'No data yet: see the agent' }).waitFor();
       await shoot('getting-started', { fullPage: true });
       await page.goto('about:blank');
       await page.goto(given.settings.emptyUrl);

@@ -1,10 +1,14 @@
 /** What a slow and dear link carries before the fleet can be seen. */
 import assert from 'node:assert/strict';
-import { fleetIsShown, notSignedIn, signIn, withModel } from '../helpers.mjs';
+import { chart, curve, fleetIsShown, notSignedIn, signIn, withModel } from '../helpers.mjs';
 import { wireTo } from '../wire.mjs';
 
 /** Sign-in, the fleet's page, coasts and data, compressed as they cross the wire. */
 const mostOctets = 200_000;
+/** Of these, what crosses until the fleet is shown. */
+const mostUntilShown = 130_000;
+/** Sign-in and a vessel's first tab with its curve. */
+const mostOfVessel = 300_000;
 /** A page of less was not loaded over this wire at all. */
 const leastOctets = 60_000;
 
@@ -28,7 +32,37 @@ export const link = {
         }
         console.log(`     ${shown} octets until the fleet is shown, ${wire.octets} in all`);
         assert.ok(shown >= leastOctets, `only ${shown} octets crossed: the wire was not watched`);
+        assert.ok(shown <= mostUntilShown, `${shown} octets crossed until the fleet was shown`);
         assert.ok(wire.octets <= mostOctets, `${wire.octets} octets crossed the wire`);
+      } finally {
+        await context.close();
+        wire.close();
+      }
+    },
+  },
+
+  'a first visit of a vessel’s page is at most 300 kB on the wire': {
+    allowedErrors: [notSignedIn],
+    async run({ browser, page: before, settings }) {
+      await signIn(before, settings);
+      const { id, name } = await withModel(before);
+      const wire = await wireTo(settings.url);
+      const context = await browser.newContext({
+        baseURL: wire.url,
+        viewport: { width: 1440, height: 900 },
+      });
+      try {
+        const page = await context.newPage();
+        await page.goto(`/vessels/${id}`);
+        await page.getByLabel('E-mail').fill(settings.email);
+        await page.getByLabel('Password').fill(settings.password);
+        await page.getByRole('button', { name: 'Sign in' }).click();
+        await page.getByRole('heading', { name, level: 1 }).waitFor();
+        await chart(page).scrollIntoViewIfNeeded();
+        await curve(page).waitFor();
+        console.log(`     ${wire.octets} octets until the curve is shown`);
+        assert.ok(wire.octets >= leastOctets, `only ${wire.octets} octets crossed`);
+        assert.ok(wire.octets <= mostOfVessel, `${wire.octets} octets crossed the wire`);
       } finally {
         await context.close();
         wire.close();

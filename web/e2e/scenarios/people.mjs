@@ -178,7 +178,7 @@ export const people = {
       await signIn(page, settings);
       await page.getByRole('link', { name: 'Firms' }).click();
       const firm = page.getByRole('region', { name: 'Maas Compass' });
-      await firm.getByRole('button', { name: /^(Add|Change) rates$/ }).click();
+      await firm.getByRole('button', { name: /^(Add|Change) terms$/ }).click();
       await firm.getByLabel('Fee for a job, €').fill('2100');
       await firm.getByLabel(/^Ports/).fill('Rotterdam');
       await firm.getByRole('button', { name: 'Save the terms' }).click();

@@ -210,6 +210,24 @@ export const session = {
     },
   },
 
+  'the help leads to what is found in the topic that is open': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await page.goto('/help/alerts');
+      const section = page.getByRole('article').getByRole('heading').last();
+      const title = await section.innerText();
+      const found = page.getByRole('link', { name: `: ${title}` });
+      // Twice: the second time the address has it already.
+      for (let time = 0; time < 2; time++) {
+        await page.getByLabel('Search the help').fill(title);
+        await found.first().click();
+        await section.waitFor();
+        assert.equal(await page.getByLabel('Search the help').inputValue(), '');
+      }
+    },
+  },
+
   'signing out ends the session': {
     allowedErrors: [notSignedIn],
     async run({ page, settings }) {

@@ -21,7 +21,6 @@ export const historyColours = [
   'var(--good)',
   'var(--notable)',
   'var(--ink-soft)',
-  'var(--bad)',
 ] as const;
 
 /** Known before the drawing is, so that its room can be kept. */

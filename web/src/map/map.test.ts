@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { land } from 'virtual:land';
-import { marks, nearest, towards, trackPath } from './marks';
+import { isGoneTo, marks, nearest, towards, trackPath } from './marks';
 import type { Place } from '../format';
 import { near, placeOf, pointOf, wrapped, type Point } from './mercator';
 import { keyed, placeAt } from './moving';
@@ -234,5 +234,20 @@ describe('a ship that is moved by hand', () => {
     expect(keyed(suva, 'ArrowRight', true)).toEqual({ lat: -18.1, lon: -171.6 });
     expect(keyed({ lat: 78, lon: 0 }, 'ArrowUp', true)).toEqual({ lat: 80, lon: 0 });
     expect(keyed(bilbao, 'Enter', false)).toBeNull();
+  });
+});
+
+describe('the middle of the map', () => {
+  const suvas = { id: 'a', place: suva };
+
+  it('goes to a vessel that is chosen, whoever moved the map before', () => {
+    expect(isGoneTo(undefined, suvas, true)).toBe(true);
+    expect(isGoneTo({ id: 'b', place: suva }, suvas, true)).toBe(true);
+  });
+
+  it('follows her as she moves, until a person moves the map', () => {
+    expect(isGoneTo(suvas, { id: 'a', place: { ...suva } }, false)).toBe(false);
+    expect(isGoneTo(suvas, { id: 'a', place: apia }, false)).toBe(true);
+    expect(isGoneTo(suvas, { id: 'a', place: apia }, true)).toBe(false);
   });
 });

@@ -9,6 +9,15 @@ export interface Placed {
   place: Place;
 }
 
+/**
+ * Whether the map goes to the chosen vessel: to another one at once, to a new place of the same
+ * one as long as nobody has moved the map since.
+ */
+export function isGoneTo(last: Placed | undefined, to: Placed, moved: boolean): boolean {
+  if (last?.id !== to.id) return true;
+  return !moved && (last.place.lat !== to.place.lat || last.place.lon !== to.place.lon);
+}
+
 /** A mark for each place in one path: lines without length, which a round or square cap shows. */
 export function marks(places: readonly Place[], view: View): string {
   return places

@@ -44,6 +44,14 @@ describe('a step drawn', () => {
     expect(port.to).toMatchObject({ red: { x: -100 } });
   });
 
+  test('is as wide as what is drawn', () => {
+    const half = (corrector: PlanStep['corrector'], to: PlanStep['to']) =>
+      drawing(step({ corrector, to }), design).half;
+    expect(half('fore_and_aft', magnets(3, 'forward'))).toBe(240);
+    const pair = { place: 'pair' as const, size: '7 inch', mark_mm: 300, slew_deg: 0 };
+    expect(half('quadrantal', pair)).toBe(305 + 89 + 20);
+  });
+
   test('says the same in words', () => {
     const { label } = drawing(step({ from: magnets(3, 'forward') }), design);
     expect(label).toBe(

@@ -30,6 +30,8 @@ export interface Drawing {
   holes: { number: number; y: number }[];
   from: Drawn | null;
   to: Drawn | null;
+  /** Half the width of the picture. */
+  half: number;
   /** Depth of the picture. */
   depth: number;
   /** The same in words. */
@@ -40,6 +42,10 @@ export interface Drawing {
 const THICK = 14;
 /** Room below the lowest place. */
 const MARGIN = 50;
+/** The column and the places' numbers beside it take so much on either side. */
+const COLUMN = 240;
+/** Room beside a corrector, and for how many magnets it is. */
+const [BESIDE, COUNT] = [20, 64];
 
 export function drawing(step: PlanStep, design: BinnacleDesign): Drawing {
   const along = step.corrector === 'fore_and_aft' || step.corrector === 'flinders';
@@ -52,6 +58,7 @@ export function drawing(step: PlanStep, design: BinnacleDesign): Drawing {
     holes,
     from: from ?? null,
     to: to ?? null,
+    half: Math.max(COLUMN, reach(from), reach(to)),
     depth: Math.max(...depths) + MARGIN,
     label: [
       `${t.action[step.action]} ${correctorName(step, design)}.`,
@@ -124,6 +131,15 @@ function drawn(
       };
     }
   }
+}
+
+/** How far a corrector reaches to either side. */
+function reach(of: Drawn | null | undefined): number {
+  if (!of) return 0;
+  if (of.kind === 'spheres') return of.apart + of.radius + BESIDE;
+  const { x, width } = of.box;
+  const count = of.kind === 'magnet' && of.count > 1 ? COUNT : 0;
+  return Math.max(-x, x + width + count) + BESIDE;
 }
 
 function bottom(of: Drawn | null | undefined): number {

@@ -21,6 +21,12 @@ export const mayBeOffered = (state: string): boolean => state === 'planned' || s
 export const mayBeClosed = (state: string): boolean => state === 'verified' || state === 'failed';
 export const mayBeClosedUnverified = (state: string): boolean => state === 'adjusted';
 
+/** States in which the next step is the operator's: to offer it, to answer, to ask again. */
+const ofOperator = ['planned', 'proposed', 'declined', 'failed'] as const;
+export type OperatorState = (typeof ofOperator)[number];
+export const waitsForOperator = (state: string): state is OperatorState =>
+  ofOperator.some((one) => one === state);
+
 /** A state's name; one that is new here is shown as the server calls it. */
 export function stateName(state: string): string {
   return text.orders.state[state as WorkOrderState] ?? state.replaceAll('_', ' ');

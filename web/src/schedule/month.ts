@@ -6,7 +6,7 @@
 
 import type { AdjustmentNeed, PlannedJob, PortCall } from '../api/types';
 import { dayAt } from '../zone';
-import type { Row } from './plan';
+import type { Row, Work } from './plan';
 
 const dayMs = 86_400_000;
 
@@ -41,25 +41,28 @@ export function weeksOf(month: string): string[][] {
 export interface Day {
   dues: AdjustmentNeed[];
   jobs: PlannedJob[];
+  /** Orders beside the plan, on the day on which their work begins. */
+  work: Work[];
   arriving: PortCall[];
   /** In port since an earlier day. */
   inPort: PortCall[];
 }
 
-export const nothing: Day = { dues: [], jobs: [], arriving: [], inPort: [] };
+export const nothing: Day = { dues: [], jobs: [], work: [], arriving: [], inPort: [] };
 
 /** What falls on the days from `from` to `to`; a day without anything is not in it. */
 export function daysWith(rows: readonly Row[], from: string, to: string): Map<string, Day> {
   const days = new Map<string, Day>();
   const on = (day: string): Day | undefined => {
     if (day < from || day > to) return undefined;
-    const known = days.get(day) ?? { dues: [], jobs: [], arriving: [], inPort: [] };
+    const known = days.get(day) ?? { dues: [], jobs: [], work: [], arriving: [], inPort: [] };
     days.set(day, known);
     return known;
   };
-  for (const { needs, jobs, calls } of rows) {
+  for (const { needs, jobs, work, calls } of rows) {
     for (const need of needs) if (need.urgency !== 'unknown') on(need.due_on)?.dues.push(need);
     for (const job of jobs) on(job.day)?.jobs.push(job);
+    for (const of of work) on(dayAt(Date.parse(of.order.from), 0))?.work.push(of);
     for (const call of calls) {
       const [arrives, leaves] = [dayAt(Date.parse(call.eta), 0), dayAt(Date.parse(call.etd), 0)];
       on(arrives)?.arriving.push(call);

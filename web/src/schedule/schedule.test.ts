@@ -225,6 +225,7 @@ describe('the month', () => {
       calls: [call, long],
       needs: [{ due_on: '2026-11-21' }, { due_on: '2026-12-21' }] as AdjustmentNeed[],
       jobs: [{ day: '2026-11-22' }] as PlannedJob[],
+      work: [{ order: { from: '2026-11-21T23:59:59Z' } }],
     };
     const found = daysWith([row as never], '2026-11-20', '2026-11-30');
     expect([...found.keys()].sort()).toEqual(['2026-11-20', '2026-11-21', '2026-11-22']);
@@ -232,6 +233,7 @@ describe('the month', () => {
     expect(found.get('2026-11-20')?.inPort).toEqual([long]);
     expect(found.get('2026-11-21')?.inPort).toEqual([call]);
     expect(found.get('2026-11-21')?.dues).toHaveLength(1);
+    expect(found.get('2026-11-21')?.work).toHaveLength(1);
     expect(found.get('2026-11-22')?.jobs).toHaveLength(1);
   });
 });

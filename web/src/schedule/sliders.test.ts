@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
 import type { Field } from './rules';
-import { figureOf, movedTo, placeOf } from './sliders';
+import { figureOf, movedTo, placeOf, positioned } from './sliders';
 
 const weight = (name: string, value: string, urgency: string | null = null): Field => ({
   ...{ part: 'weights', name, urgency, value },
@@ -36,4 +36,18 @@ test('a figure that is no number or nothing does not break the slider', () => {
   const odd = [weight('late_eur_day', '0'), weight('unmet_eur', 'many', 'soon')];
   expect(figureOf([weight('late_eur_day', 'x')], 'punctuality')).toBeUndefined();
   expect(values(movedTo(odd, 'punctuality', 4))).toEqual(['2000', 'many']);
+});
+
+test('the way back undoes the way there, past the largest figure and past cents', () => {
+  const typed = [
+    weight('late_eur_day', '125'),
+    weight('unmet_eur', '100000', 'overdue'),
+    weight('waiting_eur_day', '0.07'),
+    weight('changed_eur', '150'),
+  ];
+  const far = positioned(typed, { punctuality: 4, stability: 0 });
+  expect(values(far)).toEqual(['2000', '1000000', '1.12', '37.5']);
+  expect(values(positioned(typed, { punctuality: 0, stability: 2 }))).toEqual(values(typed));
+  // Each event from the last one's figures would not come back.
+  expect(values(movedTo(far, 'punctuality', 0))).not.toEqual(values(typed));
 });

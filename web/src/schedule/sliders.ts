@@ -45,6 +45,22 @@ export function placeOf(fields: readonly Field[], group: Group): number {
   return places.reduce((best, place, i) => (off(place) < off(places[best] ?? 1) ? i : best), 0);
 }
 
+/** Where the sliders stand that were moved since the figures were loaded or typed. */
+export type Places = Partial<Record<Group, number>>;
+
+/**
+ * The figures with sliders at their places: always from the figures as they were loaded or typed,
+ * so that a slider's way back undoes its way there.
+ */
+export const positioned = (typed: readonly Field[], places: Places): Field[] =>
+  groups.reduce<Field[]>(
+    (fields, group) => {
+      const place = places[group];
+      return place === undefined ? fields : movedTo(fields, group, place);
+    },
+    [...typed],
+  );
+
 /** The largest figure that the server takes, euros. */
 const mostEur = 1_000_000;
 

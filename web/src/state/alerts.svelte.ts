@@ -1,15 +1,17 @@
 /** The fleet's open alerts, for the badge on every page and the page of their own. */
 
-import { inOrder, worstRaised } from '../alerts';
+import { inOrder, raisedOf } from '../alerts';
 import { listOpenAlerts } from '../api/client';
 import { gathered, live } from '../api/live.svelte';
 import type { Alert } from '../api/types';
+import { clock } from './clock.svelte';
 import { Resource } from './resource.svelte';
 
 class AlertState {
   open = new Resource<Alert[]>();
-  raised = $derived(this.open.value?.filter((alert) => alert.state === 'raised').length ?? 0);
-  worst = $derived(worstRaised(this.open.value ?? []));
+  #raised = $derived(raisedOf(this.open.value ?? [], clock.now));
+  raised = $derived(this.#raised.length);
+  worst = $derived(this.#raised[0]?.severity ?? null);
 
   load = (): Promise<void> => this.open.load(async () => inOrder(await listOpenAlerts()));
 

@@ -27,6 +27,18 @@ function angleOf(text: string | null, most: number): number | undefined {
 export const compassInSearch = (search: string): string | undefined =>
   new URLSearchParams(search).get('compass') ?? undefined;
 
+/** The instant of the change that the address names, if it names one. */
+export const changeInSearch = (search: string): string | null =>
+  new URLSearchParams(search).get('change');
+
+/** What the address's search carries to another tab: all but the one change. */
+export function withoutChange(search: string): string {
+  const params = new URLSearchParams(search);
+  params.delete('change');
+  const left = params.toString();
+  return left === '' ? '' : `?${left}`;
+}
+
 /** The address's search with this compass; all else in it stays. */
 export function withCompass(search: string, compass: string): string {
   const params = new URLSearchParams(search);

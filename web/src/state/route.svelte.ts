@@ -111,6 +111,8 @@ export function newWorkOrderPath(vessel?: string, compass?: string): string {
 
 class RouteState {
   current = $state<Route>({ page: 'vessels' });
+  /** The address's search, as a page was gone to or wrote it there. */
+  search = $state('');
 
   /** Goes to a page as if a link to it had been followed. */
   go(path: string): void {
@@ -139,6 +141,13 @@ class RouteState {
     }
     // A link within a page leads nowhere else: the page stays as it is.
     if (JSON.stringify(named) !== JSON.stringify(this.current)) this.current = named;
+    this.search = location.search;
+  }
+
+  /** Writes another search into the address of the present page. */
+  replaceSearch(search: string): void {
+    history.replaceState(null, '', `${location.pathname}${search}${location.hash}`);
+    this.search = search;
   }
 
   /** Follows the address bar, and takes over clicks on links within the dashboard. */
@@ -151,7 +160,8 @@ class RouteState {
       if (event.metaKey || event.ctrlKey || event.shiftKey || event.altKey) return;
       const link = event.target instanceof Element ? event.target.closest('a') : null;
       if (link?.target !== '' || link.origin !== location.origin) return;
-      if (link.hash !== '' && link.pathname === location.pathname) return;
+      const { pathname, search } = location;
+      if (link.hash !== '' && link.pathname === pathname && link.search === search) return;
       if (link.pathname.startsWith('/api/') || link.hasAttribute('download')) return;
       event.preventDefault();
       this.go(link.href);

@@ -224,6 +224,15 @@ export class ShownVessel {
     this.#ask(ofCompass.filter((part) => this.#wanted.has(part)));
   };
 
+  /** Shows the compass that the address names, where it is hers and another than is shown. */
+  nameCompass = (named: string | undefined): void => {
+    this.#named = named;
+    const compasses = this.vessel.value?.compasses ?? [];
+    const shown = this.compass ?? compasses[0]?.id;
+    if (named === undefined || named === shown) return;
+    if (compasses.some(({ id }) => id === named)) this.chooseCompass(named);
+  };
+
   choosePeriod = (days: number): void => {
     this.period = days;
     void this.loadPicture();

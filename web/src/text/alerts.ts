@@ -22,11 +22,11 @@ export const alerts = {
   saidAcknowledged: 'The alert is acknowledged.',
   saidCleared: 'The alert is cleared.',
   handling: {
-    assigned: (name: string) => `${name} sees to it`,
+    assigned: (name: string) => `Assigned to ${name}`,
     unassigned: 'Nobody is assigned',
     assign: 'Assign to me',
     unassign: 'Unassign me',
-    snoozed: (until: string) => `postponed until ${until}`,
+    snoozed: (until: string) => `snoozed until ${until}`,
     snooze: (days: number) =>
       days === 1
         ? 'Snooze for a day'
@@ -39,8 +39,15 @@ export const alerts = {
     comment: 'Comment',
     commentMissing: 'Write a comment.',
     say: 'Add the comment',
+    said: {
+      assigned: 'The alert is assigned to you.',
+      unassigned: 'The alert is assigned to nobody.',
+      snoozed: 'The alert is snoozed.',
+      woken: 'The alert is no longer snoozed.',
+    },
   },
-  acknowledgeAll: (n: number) => (n === 1 ? 'Acknowledge the alert shown' : `Acknowledge all ${n}`),
+  acknowledgeAll: (n: number, raised: number) =>
+    n === raised ? `Acknowledge all ${n}` : `Acknowledge the first ${n} of ${raised}`,
   acknowledgeAllSure: 'The alerts stay listed, with their causes, as acknowledged.',
   saidAllAcknowledged: (n: number) =>
     n === 1 ? '1 alert is acknowledged.' : `${n} alerts are acknowledged.`,

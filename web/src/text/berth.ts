@@ -179,6 +179,7 @@ export const berth = {
       forward: 'forward',
       fromAft: 'Seen from aft.',
       fromStarboard: 'Seen from starboard.',
+      faint: 'Faint: how it was before this step.',
     },
     nowhere: 'not in use',
     out: 'out, to the spares',
@@ -225,15 +226,14 @@ export const berth = {
       confirmed: 'Within what readings err',
       not_seen: 'Not to be seen on this heading',
       wrong_end: 'Wrong end',
-      found_otherwise: 'They stood otherwise than recorded: there is a new plan',
+      found_otherwise: 'The red end was the other way than recorded: there is a new plan',
       other_strength: 'Other strength: there is a new plan',
       unexplained: 'Not explained: read again',
     } as Record<string, string>,
     todo: {
       wrong_end:
         'The magnets are in with the red end the wrong way. The plan below starts from how they stand now.',
-      found_otherwise:
-        'Before this step the magnets stood with the red end the other way than recorded. The plan below was made anew for the ship as she really is.',
+      found_otherwise: 'The red end was the other way than recorded. The plan below is new.',
       other_strength:
         'The corrector is stronger or weaker than was taken. The plan below was made anew from what you read.',
       unexplained:
@@ -319,7 +319,7 @@ export const berth = {
     missing: 'Say something.',
   },
   stand: {
-    title: 'The correctors stand otherwise',
+    title: 'The correctors are not as recorded',
     lead: 'Say how they really stand now; the plan starts from there.',
     compass: 'The compass reads then',
     note: 'Why',

@@ -5,7 +5,6 @@ export const finder = {
   open: 'Find…',
   keys: 'Ctrl K',
   label: 'Vessel, port, work order, page or setting',
-  hint: 'Name, IMO number, port…',
   results: 'Found',
   none: (query: string) => `Nothing is called “${query}”.`,
   count: (n: number) => (n === 1 ? '1 found' : `${n} found`),
@@ -19,7 +18,6 @@ export const finder = {
     order: 'Work order',
     page: 'Page',
     setting: 'Setting',
-    help: 'Help',
   },
   /** What is found on the reader's own page of the settings. */
   settings: ['Password', 'Second factor', 'API tokens', 'Times: UTC or ship’s time'],

@@ -1,5 +1,7 @@
 /** The fleet's page: map, table, and the views of it. */
 
+import type { OperatorState } from '../orders/order';
+
 export const fleet = {
   title: 'Fleet',
   of: (operator: string) => `Fleet of ${operator}`,
@@ -13,6 +15,7 @@ export const fleet = {
   needing: (n: number) => (n === 1 ? '1 needs attention' : `${n} need attention`),
   duesMissing: (why: string) =>
     `Which compasses are due could not be found out, so that the list may not show all that your vessels need: ${why}`,
+  viewsMissing: (why: string) => `Your saved views could not be found out: ${why}`,
   worst: 'Largest deviation',
   worstHelp: 'By her model, where she was last and at her next port: whichever is larger',
   quality: 'Model',
@@ -34,7 +37,7 @@ export const fleet = {
     proposed: 'Answer the firm’s proposal',
     declined: 'No firm took the order: ask another',
     failed: 'Headings at sea contradict the adjustment',
-  } as Record<string, string>,
+  } satisfies Record<OperatorState, string>,
   more: (n: number) => `and ${n} more`,
   acknowledged: 'acknowledged',
   rms: (rms: string) => `residuals ${rms}`,

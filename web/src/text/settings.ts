@@ -90,7 +90,7 @@ export const settings = {
     used: (when: string) => `last used ${when}`,
     unused: 'never used',
     end: (name: string) => `End the token “${name}”`,
-    made: 'It made, and leaves behind:',
+    made: 'Created with this token:',
     kinds: {
       webhook: 'webhook',
       mail_recipient: 'mail to',
@@ -102,8 +102,8 @@ export const settings = {
   },
 
   quotas: {
-    title: 'How much there may be',
-    lead: 'Of your company together. Whoever runs this server can allow more.',
+    title: 'Quotas',
+    lead: 'For your whole company. Whoever runs this server can allow more.',
     of: (used: number, most: number) => `${used} of ${most}`,
     names: {
       users: 'People',

@@ -13,6 +13,8 @@ export const firstRun = {
   busy: 'Creating…',
   missing: 'Fill in every field.',
   unknown: 'This code is not known. Print another on the server.',
+  made: (email: string) => `Your company is made, with the account ${email}.`,
+  notSignedIn: (why: string) => `Signing in failed: ${why}`,
   demo: 'To look around first, make demo runs a fleet of simulated vessels beside this server.',
 };
 
@@ -22,7 +24,7 @@ export const forgotten = {
   submit: 'Send the link',
   busy: 'Sending…',
   sent: (email: string) =>
-    `If ${email} has an account here, a letter is on its way. Look into your inbox.`,
+    `If ${email} has an account here, an e-mail is on its way. Check your inbox.`,
   missing: 'Enter your e-mail address.',
   back: 'Back to sign-in',
 };
@@ -62,9 +64,11 @@ export const start = {
     particulars: 'Particulars',
   },
   todo: {
-    agent: 'Enrol the agent',
+    agent: 'No data yet: see the agent',
     model: 'Waiting for samples',
     adjusted: 'Not known',
+    compass: 'No compass',
+    notAsked: 'Not known yet',
     call: 'Enter port calls',
     particulars: (missing: number) =>
       missing === 1 ? 'Complete 1 fact' : `Complete ${missing} facts`,

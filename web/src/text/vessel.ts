@@ -56,9 +56,14 @@ export const vesselPanels = {
 /** What to do about a vessel now. */
 export const now = {
   finding: 'Finding out what to do…',
+  unknown: 'Not known yet',
+  unknownWhy: 'The alerts, due dates and work orders of this vessel have not all arrived.',
   nothing: 'Nothing to do now',
-  nothingDue: 'No alert is open, no adjustment is due and no order is under way.',
-  dueLater: (on: string) => `No alert is open. The next adjustment is due on ${on}.`,
+  nothingDue: 'No alert asks for anything, no adjustment is due and no order is under way.',
+  dueLater: (on: string) => `No alert asks for anything. The next adjustment is due on ${on}.`,
+  snoozed: (n: number) => (n === 1 ? 'One alert is snoozed.' : `${n} alerts are snoozed.`),
+  notRecorded: 'No adjustment on record',
+  toStart: 'Record the date',
   openAlert: 'Open the alert',
   seeChange: 'Before and after',
   openOrder: 'Open the work order',
@@ -66,9 +71,9 @@ export const now = {
   overdue: (on: string) => `Adjustment overdue since ${on}`,
   dueBy: (on: string) => `Adjustment due by ${on}`,
   toSchedule: 'See the schedule',
-  noAgent: 'No agent is enrolled yet',
+  noAgent: 'No data from an agent yet',
   noAgentWhy:
-    'The agent on board records the compass and sends it here. Make a code and enter it on board.',
+    'The agent on board records the compass and sends the data here. It is enrolled with a code that is entered on board.',
   noModel: 'The agent is collecting samples',
   noModelWhy:
     'The first deviation curve comes after some days of sailing on different headings. There is nothing to do until then.',
@@ -80,6 +85,7 @@ export const history = {
   title: 'Deviation over time',
   lead: 'The deviation on each heading, as if the vessel had been at the last position all along. A change of the ship’s magnetism is a step; the shaded bands are 95 %.',
   headings: 'Headings',
+  most: (n: number) => `At most ${n} at once: take one out to draw another.`,
   none: 'No curve yet: it needs a model.',
   noCurve: 'no curve',
   summary: (headings: string, from: string, to: string, steps: number) =>

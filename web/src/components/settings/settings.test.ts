@@ -25,7 +25,7 @@ describe('settings', () => {
   test('show what a token made, and offer to end it with that', () => {
     const hook = { kind: 'webhook', id: 'w1', name: 'https://example.com/hook' } as const;
     expect(shown([{ ...token, made: [hook] }])).toContain(
-      'It made, and leaves behind: webhook https://example.com/hook',
+      'Created with this token: webhook https://example.com/hook',
     );
     expect(shown([{ ...token, made: [hook] }])).toContain('End with what it made');
     expect(shown([token])).not.toContain('made');
