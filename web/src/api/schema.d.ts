@@ -1792,7 +1792,8 @@ export interface paths {
         post?: never;
         /**
          * Revoke an API token
-         * @description Things made with it stay, unless you say otherwise.
+         * @description Things made with it stay, unless you say otherwise. To remove them takes a session, and the role
+         *     that may make such things.
          */
         delete: operations["delete_token"];
         options?: never;
@@ -7129,8 +7130,8 @@ export interface components {
              */
             link: string | null;
             /**
-             * @description True if the server has mailed the link to the user. It has not where mail is not set up, or
-             *     the relay refused the letter.
+             * @description True if the server has mailed the link to the user. It has not where mail is not set up, the
+             *     relay refused the letter, or too many were sent today.
              */
             mailed: boolean;
         };
@@ -12985,6 +12986,15 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
+            /** @description It has 200 comments */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Payload Too Large */
             413: {
                 headers: {
@@ -14308,6 +14318,15 @@ export interface operations {
             };
             /** @description Forbidden */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The quota is used up */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -18644,6 +18663,15 @@ export interface operations {
             };
             /** @description Unprocessable Entity */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -109,6 +109,7 @@ export const settings = {
       users: 'People',
       api_tokens: 'API tokens',
       webhooks: 'Webhooks',
+      firms: 'Firms of your own',
       calendar_feeds: 'Calendars',
       port_calls: 'Port calls, past ones too',
       order_log: 'Entries in the longest log of a job',

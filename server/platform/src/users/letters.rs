@@ -53,6 +53,10 @@ impl Letters {
         network: &str,
         now: Timestamp,
     ) -> Result<OwnedSemaphorePermit> {
+        let permit = Arc::clone(&self.at_once).try_acquire_owned();
+        let permit = permit.map_err(|_| Error::Throttled {
+            retry_after_s: RELAY_PATIENCE.as_secs(),
+        })?;
         let caller = secret::hash(&format!("network {network}"));
         let quota = self.today.count(caller, seconds(now), FROM_NETWORK);
         if quota.is_exceeded {
@@ -60,10 +64,7 @@ impl Letters {
                 retry_after_s: quota.resets_in_s,
             });
         }
-        let permit = Arc::clone(&self.at_once).try_acquire_owned();
-        permit.map_err(|_| Error::Throttled {
-            retry_after_s: RELAY_PATIENCE.as_secs(),
-        })
+        Ok(permit)
     }
 
     /// Counts an invitation by a company's admin; false when it had its number today.

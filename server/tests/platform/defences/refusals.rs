@@ -132,7 +132,7 @@ async fn whatever_a_network_types_it_fills_no_audit_log(server: TestServer) {
             _ => (format!("{number}@example.com"), too_long.as_str()),
         };
         let refused = try_sign_in(&server, &email, password).await;
-        let expected = if number <= 50 {
+        let expected = if number < 50 {
             "wrong-password"
         } else {
             "throttled"
