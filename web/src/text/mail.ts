@@ -1,8 +1,9 @@
 /** Who is told of alerts: programs and people, and what they were sent. */
 
 import type { MessageKind, Severity } from '../api/types';
+import { translate } from './language';
 
-export const webhooks = {
+export const webhooks = translate('webhooks', {
   title: 'Webhooks',
   lead: 'Programs of yours that are told of alerts. Each message is signed; the help has how to verify that.',
   none: 'No program is told of alerts yet.',
@@ -25,9 +26,9 @@ export const webhooks = {
   remove: 'Remove',
   removeQuestion: 'Remove this webhook, with what it was still to be told?',
   removeConfirm: 'Remove the webhook',
-};
+});
 
-export const outbox = {
+export const outbox = translate('outbox', {
   title: 'Latest messages',
   none: 'Nothing was sent yet.',
   kind: {
@@ -57,9 +58,9 @@ export const outbox = {
   dead: (n: number) => `${n} given up`,
   attempts: (n: number) => (n === 1 ? '1 try' : `${n} tries`),
   again: 'Send again',
-};
+});
 
-export const mail = {
+export const mail = translate('mail', {
   title: 'Mail',
   lead: 'Who gets alerts by mail: when an alert is raised, when it gets worse, and when it is over.',
   notSetUp:
@@ -83,4 +84,4 @@ export const mail = {
   remove: 'Remove',
   removeQuestion: 'Send this address no more mail?',
   removeConfirm: 'Remove the address',
-};
+});
