@@ -22,7 +22,7 @@ const same = [
   ...['settings.clocks.names.utc', 'settings.people.no', 'vessels.imo', 'grade.notable'],
   ...['reports.pdf', 'reports.csv', 'reports.due.nothing', 'table.band', 'residuals.rmsColumn'],
   ...['deviation.showLong.none', 'schedule.facts.plan', 'schedule.plans.version'],
-  ...['order.plan.title', 'berth.plans.number', 'berth.reading.horizontal'],
+  ...['order.plan.title', 'order.plan.noteWords', 'berth.plans.number', 'berth.reading.horizontal'],
   ...['coverage.ring', 'coverage.north', 'coverage.south', 'order.plan.lambda'],
   ...['fields.nth', 'offers.order', 'messages.by', 'map.chosen', 'vessels.band'],
   ...['changes.likelihood', 'berth.step.hole', 'berth.step.length', 'document.vessel'],

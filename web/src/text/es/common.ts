@@ -141,7 +141,7 @@ export const pages: Translation<typeof en.pages> = {
   reports: 'Informes',
   notifications: 'Notificaciones',
   unread: ' sin leer',
-  orders: 'Órdenes de trabajo',
+  orders: 'Órdenes',
   binnacles: 'Bitácoras',
   firms: 'Empresas',
   home: 'Mis órdenes',

@@ -131,10 +131,11 @@ export const order: Translation<typeof en.order> = {
     standTitle: 'Cómo quedarán los correctores',
     notes: 'Conviene saber',
     then: (heading, within) => `La aguja marca entonces ${heading} ${within}.`,
+    // What is around them is the server's, in English.
     noteWords: (note) =>
       note
-        .replace(/\bchi13\b/g, 'lo que el campo vertical induce longitudinalmente')
-        .replace(/\bbx\b/g, 'su magnetismo permanente longitudinal'),
+        .replace(/\bchi13\b/g, 'what the vertical field induces fore and aft')
+        .replace(/\bbx\b/g, 'her permanent fore-and-aft magnetism'),
     none: 'Todavía no hay plan.',
   },
   berthCheck: {
