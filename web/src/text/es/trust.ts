@@ -11,9 +11,9 @@ export const trust: Translation<typeof en.trust> = {
   hereNone: 'Este modelo llegó sin errores: no se sabe cuánto puede apartarse.',
   elsewhereTitle: 'En otras aguas, hasta',
   elsewhere: (limit, good, worst, at) =>
-    `Unos ${limit} o mejor a todos los rumbos ${good} de latitud magnética; en otras partes hasta ${worst}, lo peor ${at}.`,
+    `Alrededor de ${limit} o mejor a todos los rumbos ${good} de latitud magnética; en otras partes hasta ${worst}, lo peor ${at}.`,
   everywhereGood: (limit, all) =>
-    `Unos ${limit} o mejor a todos los rumbos dondequiera que navegan buques: ${all} de latitud magnética.`,
+    `Alrededor de ${limit} o mejor a todos los rumbos dondequiera que navegan buques: ${all} de latitud magnética.`,
   nowhereGood: (limit, at) =>
     `Todavía ninguna latitud magnética se conoce a ${limit} a todos los rumbos. Lo peor está ${at}.`,
   between: (from, to) => `entre ${from} y ${to}`,
