@@ -173,7 +173,7 @@ export const session = {
       await seek('Control+k', 'no such thing');
       await page.getByText('Nothing is called “no such thing”.').waitFor();
       await page.keyboard.press('Escape');
-      await box.waitFor({ state: 'detached' });
+      await page.locator('dialog').waitFor({ state: 'detached' });
       await seek('Control+k', 'help');
       await page.keyboard.press('Enter');
       await page.getByRole('heading', { name: 'Help', level: 1 }).waitFor();
