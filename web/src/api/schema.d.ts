@@ -4289,6 +4289,8 @@ export interface components {
             id: components["schemas"]["DeliveryId"];
             /** @description Kind. */
             kind: components["schemas"]["MessageKind"];
+            /** @description The message in words. */
+            words: components["schemas"]["MessageWords"];
         };
         /**
          * @description State of an alert.
@@ -7551,6 +7553,24 @@ export interface components {
          * @enum {string}
          */
         MessageKind: "alert.raised" | "alert.updated" | "alert.acknowledged" | "alert.cleared" | "order.offered" | "order.answered" | "order.lapsed" | "order.withdrawn" | "order.message" | "order.retime_proposed" | "order.call_moved" | "order.updated" | "order.completed" | "order.verified" | "order.failed" | "order.closed" | "order.cancelled" | "notification" | "report" | "test";
+        /** @description Message in words, for people. */
+        MessageWords: {
+            /**
+             * @description What it is about, in a line.
+             * @example Nao Victoria: warning, deviation over the limit
+             */
+            headline: string;
+            /**
+             * @description Path of the dashboard's page about it.
+             * @example /alerts#019ab3f0-6c1d-7a80-8a3b-5a5f3c9d7e20
+             */
+            path: string;
+            /**
+             * @description More of it.
+             * @example Deviation is 7.4° E on compass heading 095°, over the limit of 5°.
+             */
+            text: string;
+        };
         /** @description Mistake in a request's body. */
         Mistake: {
             /** @description Explanation. */
@@ -8173,6 +8193,8 @@ export interface components {
         NewWebhook: {
             /** @description True if messages are sent; true by default. */
             enabled?: boolean;
+            /** @description Form of the messages; that for programs by default. */
+            format?: components["schemas"]["WebhookFormat"];
             /**
              * @description Kinds of messages to send.
              * @example [
@@ -10916,6 +10938,8 @@ export interface components {
             id: components["schemas"]["DeliveryId"];
             /** @description Kind. */
             kind: components["schemas"]["MessageKind"];
+            /** @description The message in words. */
+            words: components["schemas"]["MessageWords"];
         };
         /**
          * Format: date-time
@@ -11285,6 +11309,8 @@ export interface components {
             dead: number;
             /** @description True if messages are sent; undelivered messages wait meanwhile. */
             enabled: boolean;
+            /** @description Form of the messages. */
+            format: components["schemas"]["WebhookFormat"];
             /** @description The webhook's id. */
             id: components["schemas"]["WebhookId"];
             /** @description Kinds of messages sent. */
@@ -11300,6 +11326,11 @@ export interface components {
              */
             url: string;
         };
+        /**
+         * @description Form of a webhook's messages.
+         * @enum {string}
+         */
+        WebhookFormat: "binnacle" | "slack" | "teams";
         /**
          * Format: uuid
          * @description Id of a webhook.
@@ -11437,6 +11468,8 @@ export interface components {
             id: components["schemas"]["DeliveryId"];
             /** @description Kind. */
             kind: components["schemas"]["MessageKind"];
+            /** @description The message in words. */
+            words: components["schemas"]["MessageWords"];
             /** @description The order at that moment, in short. */
             work_order: components["schemas"]["WorkOrderMessageOrder"];
         };
