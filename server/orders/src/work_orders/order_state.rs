@@ -53,6 +53,9 @@ pub(crate) struct OrderState {
     pub steps_done: usize,
     /// Result of the last step.
     pub last_step: Option<StepResult>,
+    /// True if nothing explained the compass after the last step, and nobody has reported the
+    /// correctors since: they may stand anywhere.
+    pub has_unexplained_step: bool,
     /// Steps done since the last reading, with the turns of the compass.
     pub steps: Vec<CompletedStep>,
     /// Heeling magnets moved before a second reading without a vertical part, which became
@@ -128,6 +131,7 @@ impl OrderState {
         self.plan = None;
         self.steps_done = 0;
         self.last_step = None;
+        self.has_unexplained_step = false;
         self.steps.clear();
         self.inspected_steps = 0;
         self.second_reading = None;
@@ -135,6 +139,27 @@ impl OrderState {
         self.reading = Some(read.clone());
         self.state = State::Measured;
         true
+    }
+
+    /// Drops the reading to plan from, which was judged by correctors that do not stand so, with
+    /// everything that followed it.
+    pub(crate) fn drop_reading(&mut self) {
+        let is_of_firm = self.offers.holder().is_some();
+        *self = OrderState {
+            state: if is_of_firm {
+                State::OnBoard
+            } else {
+                State::Planned
+            },
+            offers: std::mem::take(&mut self.offers),
+            hours: self.hours.take(),
+            call_change: self.call_change.take(),
+            port: self.port.take(),
+            limits: self.limits,
+            as_found: self.as_found.take(),
+            photos: std::mem::take(&mut self.photos),
+            ..OrderState::default()
+        };
     }
 
     /// Restores the state before the second reading became the one to plan from, if nothing
@@ -212,9 +237,9 @@ impl OrderState {
         self.moved_to.as_ref().or(as_read)
     }
 
-    /// Returns whether a corrector was moved.
+    /// Returns whether a corrector was moved, or may have been.
     pub(crate) fn has_moved_correctors(&self) -> bool {
-        if self.first_reading.is_some() {
+        if self.first_reading.is_some() || self.has_unexplained_step {
             return true;
         }
         let as_read = self.binnacle.as_ref().map(|binnacle| &binnacle.setting);

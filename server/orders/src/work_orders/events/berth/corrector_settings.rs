@@ -66,6 +66,7 @@ impl Event for CorrectorMove {
         }
         state.compass_deg = self.compass_deg.or(unmoved_deg);
         // The report covers every corrector.
+        state.has_unexplained_step = false;
         state.inspected_steps = state.steps.len();
         state.inspected_since_reading = state.second_reading.is_some();
         state.moved_to = Some(self.after.clone());
