@@ -62,19 +62,47 @@ pub(super) struct CardInput {
     pub(super) public_url: Option<String>,
 }
 
+/// Deviations of a card.
+pub(super) struct Tables {
+    /// Points of the curve.
+    curve: Vec<DeviationRow>,
+    /// Lines of the table.
+    pub(super) lines: Vec<DeviationRow>,
+    widest_band95_deg: f64,
+}
+
+/// Returns the deviations of a card by a model in a field at a time, or the reason why the model
+/// makes no card.
+pub(super) fn tables(
+    model: &StoredModel,
+    earth: EarthField,
+    limit_deg: f64,
+    at: Time,
+) -> Result<Tables, Refusal> {
+    not_too_old(model.data_until, at)?;
+    let ship = &model.model.0;
+    let curve = deviation::table(ship, earth, CURVE_STEP_DEG)?;
+    Ok(Tables {
+        widest_band95_deg: widest(&curve, limit_deg)?,
+        lines: deviation::table(ship, earth, STEP_DEG)?,
+        curve,
+    })
+}
+
 /// Makes the card, or returns the reason for refusing it.
 pub(super) fn make(input: CardInput) -> error::Result<Card> {
     let CardInput { model, place, .. } = &input;
     not_suspected(&input.alerts)?;
-    not_too_old(model.data_until, place.at.max(input.now))?;
     let earth = EarthField {
         h_nt: place.h_nt,
         z_nt: place.z_nt,
     };
     let ship = &model.model.0;
-    let curve = deviation::table(ship, earth, CURVE_STEP_DEG).map_err(Refusal::from)?;
-    let widest_band95_deg = widest(&curve, input.limit_deg)?;
-    let lines = deviation::table(ship, earth, STEP_DEG).map_err(Refusal::from)?;
+    let Tables {
+        curve,
+        lines,
+        widest_band95_deg,
+    } = tables(model, earth, input.limit_deg, place.at.max(input.now))?;
     let coefficients = coefficients(ship, earth)?;
     let at = place.at;
     let cargo = cargo_at(&input.logbook, at);
