@@ -15,7 +15,7 @@ use crate::work_orders::payload::recorded_second_reading::{
 };
 use crate::work_orders::payload::sea_verification::SeaVerification;
 use crate::work_orders::payload::signed_record::{Completion, RecordedSignature};
-use crate::work_orders::payload::step_result::StepResult;
+use crate::work_orders::payload::step_result::{StepResult, StepVerdict};
 use crate::work_orders::state::State;
 use binnacle_adjustment::adjust::{
     CompletedStep, Corrector, Limits, PredictedTable, Step, UpdatedPrediction,
@@ -43,7 +43,7 @@ pub(crate) struct OrderState {
     pub reading: Option<RecordedReading>,
     /// Binnacle with the strengths found so far, its correctors set as at the reading.
     pub binnacle: Option<Binnacle>,
-    /// Strengths inferred from steps, in order.
+    /// Strengths and wrong ends inferred from steps, in order.
     pub inferred_strengths: Vec<InferredStrength>,
     /// Setting of the correctors, if they were moved since the reading.
     pub moved_to: Option<Setting>,
@@ -86,9 +86,12 @@ pub(crate) struct OrderState {
     pub signatures: Vec<RecordedSignature>,
 }
 
-/// Strength of a corrector, inferred from the turn of the compass at a step.
+/// Strength of a corrector, or a wrong end in the record, inferred from the turn of the compass at a
+/// step.
 #[derive(Clone, Debug)]
 pub(crate) struct InferredStrength {
+    /// Which of the two.
+    pub verdict: StepVerdict,
     /// The step, with the assumed position of its corrector.
     pub step: Step,
     /// Reading of the compass before it, degrees.

@@ -99,7 +99,12 @@ impl CorrectorMove {
         let mut strengths = state.inferred_strengths.iter();
         let elsewhere =
             strengths.position(|strength| strength.step.is_contradicted(assumed, &self.after));
-        let is_last = |result: &StepResult| result.verdict == StepVerdict::OtherStrength;
+        let is_last = |result: &StepResult| {
+            matches!(
+                result.verdict,
+                StepVerdict::OtherStrength | StepVerdict::FoundOtherwise
+            )
+        };
         let is_read_again = *assumed == self.after
             && self.compass_deg.is_some()
             && state.last_step.as_ref().is_some_and(is_last);

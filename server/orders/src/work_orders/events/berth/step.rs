@@ -43,6 +43,7 @@ impl Event for RecordedStep {
         if let Some(binnacle) = &self.binnacle {
             let before = state.binnacle.replace(binnacle.clone());
             let inferred = before.map(|binnacle| InferredStrength {
+                verdict: self.result.verdict,
                 step: self.step.clone(),
                 before_deg: self.result.before_deg,
                 binnacle,
