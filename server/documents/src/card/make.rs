@@ -10,8 +10,9 @@ use super::contents::{
     predicted_at_berth, verified,
 };
 use super::due::{self, next_due};
-use super::observed::{Observed, STEP_DEG};
-use super::refusal::{OLDEST_DAYS, Refusal};
+use super::observed::Observed;
+use super::refusal::Refusal;
+use super::tables::{NO_BAND_DEG, Tables, tables};
 use binnacle_compass::deviation::{Coefficients as Exact, DeviationError};
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::model::Model;
@@ -25,12 +26,6 @@ use binnacle_fleet::models::StoredModel;
 use binnacle_platform::error::{self, Error};
 use binnacle_platform::signing_keys::ServerKey;
 use binnacle_platform::time::Time;
-
-/// Degrees of compass heading between points of the curve.
-const CURVE_STEP_DEG: f64 = 5.0;
-
-/// A band that excludes no heading.
-const NO_BAND_DEG: f64 = 180.0;
 
 /// Records that a card is made from.
 pub(super) struct CardInput {
@@ -60,33 +55,6 @@ pub(super) struct CardInput {
     pub(super) key: ServerKey,
     /// Public address of the server.
     pub(super) public_url: Option<String>,
-}
-
-/// Deviations of a card.
-pub(super) struct Tables {
-    /// Points of the curve.
-    curve: Vec<DeviationRow>,
-    /// Lines of the table.
-    pub(super) lines: Vec<DeviationRow>,
-    widest_band95_deg: f64,
-}
-
-/// Returns the deviations of a card by a model in a field at a time, or the reason why the model
-/// makes no card.
-pub(super) fn tables(
-    model: &StoredModel,
-    earth: EarthField,
-    limit_deg: f64,
-    at: Time,
-) -> Result<Tables, Refusal> {
-    not_too_old(model.data_until, at)?;
-    let ship = &model.model.0;
-    let curve = deviation::table(ship, earth, CURVE_STEP_DEG)?;
-    Ok(Tables {
-        widest_band95_deg: widest(&curve, limit_deg)?,
-        lines: deviation::table(ship, earth, STEP_DEG)?,
-        curve,
-    })
 }
 
 /// Makes the card, or returns the reason for refusing it.
@@ -248,33 +216,6 @@ fn not_suspected(alerts: &[OpenAlert]) -> Result<(), Refusal> {
         }),
         None => Ok(()),
     }
-}
-
-fn not_too_old(data_until: Time, at: Time) -> Result<(), Refusal> {
-    let days = at.0.seconds_since(data_until.0) / 86_400.0;
-    if days > OLDEST_DAYS {
-        return Err(Refusal::TooOld { data_until, days });
-    }
-    Ok(())
-}
-
-fn widest(curve: &[DeviationRow], limit_deg: f64) -> Result<f64, Refusal> {
-    let (mut widest_deg, mut compass_deg) = (0.0, 0.0);
-    for row in curve {
-        // Without a covariance the band is unknown.
-        let band95_deg = row.band95_deg.unwrap_or(NO_BAND_DEG);
-        if band95_deg > widest_deg {
-            (widest_deg, compass_deg) = (band95_deg, row.compass_deg);
-        }
-    }
-    if widest_deg > limit_deg {
-        return Err(Refusal::BandTooWide {
-            band95_deg: widest_deg,
-            compass_deg,
-            limit_deg,
-        });
-    }
-    Ok(widest_deg)
 }
 
 fn line(row: &DeviationRow, observed: Observed) -> CardRow {

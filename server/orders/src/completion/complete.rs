@@ -48,6 +48,13 @@ pub(crate) fn require_planned_setting(state: &OrderState) -> Result<&Setting> {
             "step {number} is not done: do it, or plan from the present settings"
         ));
     }
+    if state.has_unexplained_step {
+        return wrong(
+            "nothing explains the compass after the last step: report how the correctors stand, \
+                under corrector-settings"
+                .to_owned(),
+        );
+    }
     Ok(&plan.plan.setting)
 }
 

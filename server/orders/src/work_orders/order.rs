@@ -46,7 +46,7 @@ pub(crate) struct Order {
     /// before.
     #[schema(required)]
     pub as_found: Option<AsFound>,
-    /// What must be repaired before anything is planned, by the checks alongside.
+    /// Defects by the checks alongside, to be repaired before anything is planned.
     pub defects: Vec<String>,
     /// Last accepted reading of the magnetometer.
     #[schema(required)]

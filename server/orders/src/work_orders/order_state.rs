@@ -90,7 +90,7 @@ pub(crate) struct OrderState {
 /// step.
 #[derive(Clone, Debug)]
 pub(crate) struct InferredStrength {
-    /// Which of the two.
+    /// Verdict on the step.
     pub verdict: StepVerdict,
     /// The step, with the assumed position of its corrector.
     pub step: Step,

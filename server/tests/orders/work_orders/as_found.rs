@@ -74,6 +74,11 @@ async fn a_setting_other_than_recorded_needs_a_reason_and_becomes_the_record(ser
     let recorded = job.person.get(&job.path("/binnacle")).await.good();
     assert_eq!(recorded["revision"], 2);
     assert_eq!(recorded["binnacle"]["setting"]["athwartship"][0]["hole"], 7);
+    found["setting"]["athwartship"][0]["hole"] = json!(8);
+    found["difference"] = json!("moved_since");
+    job.post("/as-found", &found).await.good();
+    let logbook = job.person.get(&job.ship.path("/logbook")).await.good();
+    assert_eq!(logbook["items"][0]["kind"], "corrector_change", "{logbook}");
     server.finish().await;
 }
 

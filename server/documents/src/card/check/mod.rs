@@ -9,9 +9,9 @@ mod page;
 
 pub(super) use code::CardContent;
 
-use super::make::tables;
 use super::observed::STEP_DEG;
 use super::refusal::Refusal;
+use super::tables::tables;
 use axum::Router;
 use axum::extract::{FromRef, Path, State};
 use axum::http::StatusCode;
