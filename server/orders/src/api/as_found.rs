@@ -98,12 +98,14 @@ fn check_photos(stored: &StoredOrder, found: &AsFound) -> Result<()> {
     }
 }
 
+/// Field of the spheres' residual magnetism.
+const TURNED: &str = "dockside.spheres_turned_deg";
+
 /// Compares the setting with the record; returns the corrected binnacle where they differ.
 fn compare(recorded: &Binnacle, found: &AsFound) -> Result<Option<Binnacle>> {
     let corrected = recorded
         .with_setting(found.setting.clone())
         .map_err(invalid_binnacle)?;
-    const TURNED: &str = "dockside.spheres_turned_deg";
     match found.dockside.spheres_turned_deg {
         Some(turned_deg) => {
             degrees(TURNED, turned_deg, 0.0, 180.0)?;

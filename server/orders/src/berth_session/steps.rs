@@ -216,13 +216,14 @@ fn unexplained_text(step: &Step, off_deg: f64, unmoved: bool) -> String {
 }
 
 fn strength_text(share: f64, other_hole: Option<u16>, or_found_otherwise: bool) -> String {
-    let mut words = format!("the corrector is {share:.2} times as strong as assumed");
-    if let Some(hole) = other_hole {
-        words += &format!(
-            ", or stands at hole {hole}: count again; if it does, report the settings, or \
+    let words = format!("the corrector is {share:.2} times as strong as assumed");
+    let mut words = match other_hole {
+        Some(hole) => format!(
+            "{words}, or stands at hole {hole}: count again; if it does, report the settings, or \
                 correct it and report that with the new compass reading"
-        );
-    }
+        ),
+        None => words,
+    };
     if or_found_otherwise {
         words += "; or before this step the magnets stood with the other end than recorded: look \
             at the photographs as found, and read the field again after the last step";
@@ -265,14 +266,13 @@ fn disputed(
         return Ok(None);
     }
     let mut plan_request = state.plan_request()?;
-    plan_request.binnacle = match strength.verdict {
-        StepVerdict::FoundOtherwise => strength.binnacle.clone(),
+    plan_request.binnacle = if strength.verdict == StepVerdict::FoundOtherwise {
+        strength.binnacle.clone()
+    } else {
         // What a later step showed of the record holds.
-        _ => {
-            let as_read = plan_request.binnacle.setting.clone();
-            let before = strength.binnacle.with_setting(as_read);
-            before.map_err(binnacle_fleet::binnacles::invalid_binnacle)?
-        }
+        let as_read = plan_request.binnacle.setting.clone();
+        let before = strength.binnacle.with_setting(as_read);
+        before.map_err(binnacle_fleet::binnacles::invalid_binnacle)?
     };
     Ok(Some((Box::new(plan_request), Box::new(strength))))
 }
