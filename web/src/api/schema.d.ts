@@ -11334,7 +11334,7 @@ export interface components {
              */
             compass_deg: number | null;
             completion: components["schemas"]["CompletionMade"] | null;
-            /** @description What must be repaired before anything is planned, by the checks alongside. */
+            /** @description Defects by the checks alongside, to be repaired before anything is planned. */
             defects: string[];
             /**
              * Format: double
