@@ -185,8 +185,8 @@ function faultOfShifted(draft: ReadingDraft): { field: Field; message: string } 
     return { field: 'shiftedHeading', message: wrong.shifted };
   }
   for (const [name, label] of [
-    ['shiftedForward', t.forward],
-    ['shiftedStarboard', t.starboard],
+    ['shiftedForward', t.shiftedForward],
+    ['shiftedStarboard', t.shiftedStarboard],
   ] as const) {
     if (number(draft[name]) === null) return { field: name, message: wrong.number(label) };
   }

@@ -71,6 +71,8 @@ export const berth = {
       'Where a plan advises it: the ship shifted by 30 degrees or more, the same magnetometer, nothing moved. It shows steel on the quay.',
     sent: 'Fill in the first reading as it was sent',
     shiftedHeading: 'True heading there',
+    shiftedForward: 'Field there, forward',
+    shiftedStarboard: 'Field there, to starboard',
     compass: 'The compass read, before the bowl came out',
     compassHelp: 'Steps are checked from here',
     unit: 'Unit of the magnetometer',
