@@ -110,8 +110,8 @@ pub enum CardState {
     Withdrawn,
     /// The compass itself is suspected.
     Suspected,
-    /// What is known now makes no card: the last heading is too old, the band too wide, or
-    /// headings are ambiguous in the card's field.
+    /// No card would be printed now: the last heading is too old, the band too wide, or headings
+    /// are ambiguous in the card's field.
     Unconfirmed,
 }
 
