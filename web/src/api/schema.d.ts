@@ -2976,7 +2976,8 @@ export interface paths {
          * Cancel a work order
          * @description For the operator; a firm declines instead. Correctors that were moved keep their settings: the
          *     next revision of the binnacle and an entry in the logbook record them, and a predicted model
-         *     lets the vessel be planned again.
+         *     lets the vessel be planned again. There is no such model after a second reading that contradicts
+         *     the steps, or a step that nothing explains: headings at sea make the next one.
          */
         post: operations["cancel_work_order"];
         delete?: never;
@@ -5044,7 +5045,7 @@ export interface components {
             /**
              * Format: double
              * @description Greatest difference between the card and the compass's latest model, at the card's place,
-             *     degrees; none without a model.
+             *     degrees; none where no model gives deviations there.
              * @example 0.2
              */
             largest_difference_deg: number | null;
@@ -5248,7 +5249,7 @@ export interface components {
          * @description State of a printed card.
          * @enum {string}
          */
-        CardState: "in_force" | "replaced" | "withdrawn" | "suspected";
+        CardState: "in_force" | "replaced" | "withdrawn" | "suspected" | "unconfirmed";
         /**
          * @description CardStatus of a card.
          * @enum {string}
@@ -11364,6 +11365,8 @@ export interface components {
              */
             compass_deg: number | null;
             completion: components["schemas"]["CompletionMade"] | null;
+            /** @description Defects by the checks alongside, to be repaired before anything is planned. */
+            defects: string[];
             /**
              * Format: double
              * @description Fee agreed with the firm that has the order, euros, without travel; `null` without a firm,
@@ -30123,7 +30126,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Also when the compass has no binnacle yet */
+            /** @description Also when the compass has no binnacle yet, or its record was changed after the correctors were confirmed as found */
             409: {
                 headers: {
                     [name: string]: unknown;
