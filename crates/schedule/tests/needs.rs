@@ -80,6 +80,29 @@ fn a_compass_without_a_record_is_unknown_and_to_be_arranged_within_the_soon_days
 }
 
 #[test]
+fn a_missing_record_hides_no_change() {
+    let ship: Ship = from_value(json!({"flag": "NO"})).unwrap();
+    let struck = json!({"change": {"on": "2026-11-20", "size_deg": 20.0}});
+    let struck: Compass = from_value(struck).unwrap();
+    let terms = Terms {
+        soon_days: 14,
+        ..Terms::default()
+    };
+    let of = |today: &str| due(&ship, &struck, built_in_rules(), &terms, day(today)).unwrap();
+    let found = of("2026-11-21");
+    assert_eq!(
+        (found.on, found.urgency),
+        (day("2026-12-20"), Urgency::Routine)
+    );
+    assert!(found.reason.contains("20"), "{}", found.reason);
+    assert_eq!(of("2026-12-08").urgency, Urgency::Urgent);
+    // What is due in a year is arranged with the first adjustment.
+    let transit = json!({"flag": "NO", "gross_tonnage": 5000,
+                         "transits": [{"canal": "panama", "on": "2027-11-01"}]});
+    assert_eq!(due_of(transit, json!({})).urgency, Urgency::Unknown);
+}
+
+#[test]
 fn a_transit_of_panama_asks_for_a_table_of_the_last_twelve_months() {
     let ship = |tonnage: u32, on: &str| json!({"flag": "NO", "gross_tonnage": tonnage, "transits": [{"canal": "panama", "on": on}]});
     let compass = json!({"adjusted_on": "2026-01-10"});

@@ -46,7 +46,7 @@ pub(super) async fn list_mistakes(request: Request, next: Next) -> Response {
 /// Body that no handler takes, in place of one with a list for an object.
 const LIST_FOR_OBJECT: &str = "\"a list in place of an object\"";
 
-/// What in a body is not as its schema says.
+/// Mistake in a body: something that is not as its schema says.
 struct Mistake {
     /// JSON pointer of the part.
     pointer: String,

@@ -1,17 +1,22 @@
 //! Check of a printed card, by anyone who holds it.
 
 use binnacle_compass::time::Timestamp;
+use binnacle_server_testing::alerts::{agent_alert, put_agent_alerts, set_alert_limits};
 use binnacle_server_testing::{
     ApiResponse, Engine, Person, Ship, TestServer, days_at_sea, model_after_step, on_both,
     true_model,
 };
-use serde_json::Value;
+use binnacle_wire::alert::ShipAlertState;
+use serde_json::{Value, json};
 
 on_both!(
     a_card_is_in_force_until_a_change_replaces_it,
     a_check_tells_neither_place_nor_operator,
     a_code_that_the_server_did_not_sign_is_of_no_card,
     a_code_is_good_after_the_key_was_rotated,
+    a_card_that_would_not_be_printed_now_cannot_be_confirmed,
+    a_card_of_a_withdrawn_model_is_withdrawn,
+    a_card_of_a_suspected_compass_is_suspected,
 );
 
 const FROM: &str = "2026-11-01T00:00:00Z";
@@ -148,6 +153,60 @@ async fn a_code_is_good_after_the_key_was_rotated(server: TestServer) {
         let found = check(&server, code(card)).await.good();
         assert_eq!(found["state"], "in_force", "{found}");
     }
+    server.finish().await;
+}
+
+/// Checks the state of a card; returns its statement.
+async fn statement(server: &TestServer, card: &Value, state: &str) -> String {
+    let found = check(server, code(card)).await.good();
+    assert_eq!(found["state"], state, "{found}");
+    found["statement"].as_str().unwrap().to_owned()
+}
+
+async fn a_card_that_would_not_be_printed_now_cannot_be_confirmed(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let (nao, card) = printed(&server, &ada).await;
+    let far = format!("/card.json?lat=20&lon=-40&at={}", "2026-11-12T00:00:00Z");
+    let wide = ada.get(&nao.path(&far)).await.good();
+    // The vessel's limit is narrower now than the band there.
+    let band_deg = wide["widest_band95_deg"].as_f64().unwrap();
+    let limit = json!({ "band95_deg": 0.9 * band_deg });
+    set_alert_limits(&server, &ada, &nao, limit).await;
+    let words = statement(&server, &wide, "unconfirmed").await;
+    assert!(words.contains("known only to ±"), "{words}");
+    let limit = json!({ "band95_deg": 3.0 });
+    set_alert_limits(&server, &ada, &nao, limit).await;
+    statement(&server, &wide, "in_force").await;
+
+    server.advance(100.0 * 86_400.0);
+    let words = statement(&server, &card, "unconfirmed").await;
+    assert!(words.contains("2026-11-10"), "{words}");
+    let page = reqwest::get(format!("{}/check/{}", server.url, code(&card)))
+        .await
+        .unwrap();
+    let page = page.text().await.unwrap();
+    assert!(page.contains("cannot be confirmed"), "{page}");
+    server.finish().await;
+}
+
+async fn a_card_of_a_withdrawn_model_is_withdrawn(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let (nao, card) = printed(&server, &ada).await;
+    let moved = json!({ "kind": "corrector_change", "from": "2026-11-11T00:00:00Z" });
+    ada.post(&nao.path("/logbook"), &moved).await.good();
+    server.work().await;
+    let words = statement(&server, &card, "withdrawn").await;
+    assert!(words.contains("corrector change"), "{words}");
+    server.finish().await;
+}
+
+async fn a_card_of_a_suspected_compass_is_suspected(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let (nao, card) = printed(&server, &ada).await;
+    let parted = agent_alert(1, 1, ShipAlertState::Open);
+    put_agent_alerts(&nao, 2, Vec::new(), vec![parted]).await;
+    let words = statement(&server, &card, "suspected").await;
+    assert!(words.contains("Do not rely"), "{words}");
     server.finish().await;
 }
 

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 
 mod agent_alerts;
+mod alert_handling;
 mod alerts;
 mod analysis;
 mod azimuths;

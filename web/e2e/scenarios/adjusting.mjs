@@ -235,11 +235,20 @@ export const adjusting = {
         await confirm.click();
         await page.getByText('Tick each corrector that you have looked at').waitFor();
       }
-      for (const line of lines) await line.check();
-      const turned = page.getByLabel(/^Turn each Kelvin sphere/);
-      if ((await turned.count()) > 0) await turned.fill('0.5');
+      const look = async () => {
+        for (const line of await page.getByTestId('seen').all()) await line.check();
+        const turned = page.getByLabel(/^Turn each Kelvin sphere/);
+        if ((await turned.count()) > 0) await turned.fill('0.5');
+      };
+      await look();
       await fitsItsWidth(page);
       await shoot('berth-found-phone', { fullPage: true });
+      // A defective compass is repaired, and reported again.
+      await page.getByLabel(/^Pivot/).selectOption('defective');
+      await confirm.click();
+      await page.getByText('To be repaired before planning').waitFor();
+      await look();
+      await page.getByLabel(/^Pivot/).selectOption('sound');
       await confirm.click();
       await page.getByRole('heading', { name: 'Read the field' }).waitFor();
 

@@ -303,7 +303,9 @@ export const vessel = {
           found.evaluateAll((all) =>
             Math.max(...all.map((node) => node.getBoundingClientRect().right)),
           );
-        const chartEnds = await right(page.getByTestId('history-chart').locator('svg'));
+        const chart = page.getByTestId('history-chart').locator('svg');
+        await chart.first().waitFor();
+        const chartEnds = await right(chart);
         const lanesEnd = await right(page.getByTestId('time-lanes').getByRole('listitem'));
         assert.ok(
           lanesEnd <= chartEnds && lanesEnd > chartEnds - 40,

@@ -2976,7 +2976,8 @@ export interface paths {
          * Cancel a work order
          * @description For the operator; a firm declines instead. Correctors that were moved keep their settings: the
          *     next revision of the binnacle and an entry in the logbook record them, and a predicted model
-         *     lets the vessel be planned again.
+         *     lets the vessel be planned again. There is no such model after a second reading that contradicts
+         *     the steps, or a step that nothing explains: headings at sea make the next one.
          */
         post: operations["cancel_work_order"];
         delete?: never;
@@ -4289,6 +4290,8 @@ export interface components {
             id: components["schemas"]["DeliveryId"];
             /** @description Kind. */
             kind: components["schemas"]["MessageKind"];
+            /** @description The message in words. */
+            words: components["schemas"]["MessageWords"];
         };
         /**
          * @description State of an alert.
@@ -5042,7 +5045,7 @@ export interface components {
             /**
              * Format: double
              * @description Greatest difference between the card and the compass's latest model, at the card's place,
-             *     degrees; none without a model.
+             *     degrees; none where no model gives deviations there.
              * @example 0.2
              */
             largest_difference_deg: number | null;
@@ -5246,7 +5249,7 @@ export interface components {
          * @description State of a printed card.
          * @enum {string}
          */
-        CardState: "in_force" | "replaced" | "withdrawn" | "suspected";
+        CardState: "in_force" | "replaced" | "withdrawn" | "suspected" | "unconfirmed";
         /**
          * @description CardStatus of a card.
          * @enum {string}
@@ -7551,6 +7554,24 @@ export interface components {
          * @enum {string}
          */
         MessageKind: "alert.raised" | "alert.updated" | "alert.acknowledged" | "alert.cleared" | "order.offered" | "order.answered" | "order.lapsed" | "order.withdrawn" | "order.message" | "order.retime_proposed" | "order.call_moved" | "order.updated" | "order.completed" | "order.verified" | "order.failed" | "order.closed" | "order.cancelled" | "notification" | "report" | "test";
+        /** @description Message in words, for people. */
+        MessageWords: {
+            /**
+             * @description What it is about, in a line.
+             * @example Nao Victoria: warning, deviation over the limit
+             */
+            headline: string;
+            /**
+             * @description Path of the dashboard's page about it.
+             * @example /alerts#019ab3f0-6c1d-7a80-8a3b-5a5f3c9d7e20
+             */
+            path: string;
+            /**
+             * @description More of it.
+             * @example Deviation is 7.4° E on compass heading 095°, over the limit of 5°.
+             */
+            text: string;
+        };
         /** @description Mistake in a request's body. */
         Mistake: {
             /** @description Explanation. */
@@ -8173,6 +8194,8 @@ export interface components {
         NewWebhook: {
             /** @description True if messages are sent; true by default. */
             enabled?: boolean;
+            /** @description Form of the messages; that for programs by default. */
+            format?: components["schemas"]["WebhookFormat"];
             /**
              * @description Kinds of messages to send.
              * @example [
@@ -10916,6 +10939,8 @@ export interface components {
             id: components["schemas"]["DeliveryId"];
             /** @description Kind. */
             kind: components["schemas"]["MessageKind"];
+            /** @description The message in words. */
+            words: components["schemas"]["MessageWords"];
         };
         /**
          * Format: date-time
@@ -11285,6 +11310,8 @@ export interface components {
             dead: number;
             /** @description True if messages are sent; undelivered messages wait meanwhile. */
             enabled: boolean;
+            /** @description Form of the messages. */
+            format: components["schemas"]["WebhookFormat"];
             /** @description The webhook's id. */
             id: components["schemas"]["WebhookId"];
             /** @description Kinds of messages sent. */
@@ -11300,6 +11327,11 @@ export interface components {
              */
             url: string;
         };
+        /**
+         * @description Form of a webhook's messages.
+         * @enum {string}
+         */
+        WebhookFormat: "binnacle" | "slack" | "teams";
         /**
          * Format: uuid
          * @description Id of a webhook.
@@ -11333,6 +11365,8 @@ export interface components {
              */
             compass_deg: number | null;
             completion: components["schemas"]["CompletionMade"] | null;
+            /** @description Defects by the checks alongside, to be repaired before anything is planned. */
+            defects: string[];
             /**
              * Format: double
              * @description Fee agreed with the firm that has the order, euros, without travel; `null` without a firm,
@@ -11437,6 +11471,8 @@ export interface components {
             id: components["schemas"]["DeliveryId"];
             /** @description Kind. */
             kind: components["schemas"]["MessageKind"];
+            /** @description The message in words. */
+            words: components["schemas"]["MessageWords"];
             /** @description The order at that moment, in short. */
             work_order: components["schemas"]["WorkOrderMessageOrder"];
         };
@@ -30090,7 +30126,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Also when the compass has no binnacle yet */
+            /** @description Also when the compass has no binnacle yet, or its record was changed after the correctors were confirmed as found */
             409: {
                 headers: {
                     [name: string]: unknown;

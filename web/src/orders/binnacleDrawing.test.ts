@@ -55,7 +55,7 @@ describe('a step drawn', () => {
   test('says the same in words', () => {
     const { label } = drawing(step({ from: magnets(3, 'forward') }), design);
     expect(label).toBe(
-      'Move Fore-and-aft magnets. From: hole 3, 2 magnets, 200 mm, red end FORWARD. To: out, to the spares. Seen from starboard.',
+      'Move fore-and-aft magnets. From: hole 3, 2 magnets, 200 mm, red end FORWARD. To: out, to the spares. Seen from starboard.',
     );
   });
 
@@ -64,17 +64,22 @@ describe('a step drawn', () => {
     const spheres = drawing(step({ corrector: 'quadrantal', to: pair }), design);
     expect(spheres.to).toEqual({ kind: 'spheres', apart: 305, radius: 89 });
     expect(spheres.label).toContain('Kelvin spheres');
+    expect(spheres.slew).toBe('');
+    const slewed = step({ corrector: 'quadrantal', from: pair, to: { ...pair, slew_deg: -12 } });
+    expect(drawing(slewed, design).slew).toContain('0° before this step, −12° after it');
     const bar = { place: 'bar' as const, length_mm: 300, side: 'forward' as const, slew_deg: 0 };
     const drawn = drawing(step({ corrector: 'flinders', to: bar }), design).to;
     expect(drawn).toMatchObject({ kind: 'bar', box: { x: 262.5, y: -25, height: 300 } });
   });
 });
 
-test('settings differ by a red end, and not by the order of their fields', () => {
+test('settings differ by a red end, and not by the order of their fields or trays', () => {
   const tray = { hole: 5, magnet: '200 mm', count: 1, red: 'aft' as const };
   const same = { red: 'aft' as const, count: 1, magnet: '200 mm', hole: 5 };
   expect(differs({ fore_and_aft: [tray] }, { fore_and_aft: [same], athwartship: [] })).toBe(false);
   expect(differs({ fore_and_aft: [tray] }, { fore_and_aft: [{ ...tray, red: 'forward' }] })).toBe(
     true,
   );
+  const two = [tray, { ...tray, hole: 2 }];
+  expect(differs({ fore_and_aft: two }, { fore_and_aft: two.toReversed() })).toBe(false);
 });

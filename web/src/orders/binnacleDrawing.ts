@@ -34,6 +34,8 @@ export interface Drawing {
   half: number;
   /** Depth of the picture. */
   depth: number;
+  /** What of a slew the picture does not show; empty where nothing is slewed. */
+  slew: string;
   /** The same in words. */
   label: string;
 }
@@ -60,8 +62,9 @@ export function drawing(step: PlanStep, design: BinnacleDesign): Drawing {
     to: to ?? null,
     half: Math.max(COLUMN, reach(from), reach(to)),
     depth: Math.max(...depths) + MARGIN,
+    slew: slew(step),
     label: [
-      `${t.action[step.action]} ${correctorName(step, design)}.`,
+      `${t.action[step.action]} ${inSentence(correctorName(step, design))}.`,
       said(t.from, step.from ?? null, t.nowhere),
       said(t.to, step.to ?? null, t.out),
       along ? t.drawing.fromStarboard : t.drawing.fromAft,
@@ -131,6 +134,21 @@ function drawn(
       };
     }
   }
+}
+
+/** A name within a sentence: the bar keeps the capital of its inventor, as the spheres do. */
+function inSentence(name: string): string {
+  const proper = [text.berth.step.corrector.flinders, text.berth.step.shapes.sphere];
+  return proper.includes(name) ? name : name.charAt(0).toLowerCase() + name.slice(1);
+}
+
+/** Slews before and after, clockwise as seen from above. */
+function slew({ from, to }: PlanStep): string {
+  const of = (place: CorrectorPlace | null | undefined) =>
+    place?.place === 'pair' || place?.place === 'bar' ? (place.slew_deg ?? 0) : 0;
+  if (of(from) === 0 && of(to) === 0) return '';
+  const [before, after] = [of(from), of(to)].map((deg) => `${deg}°`.replace('-', '−'));
+  return text.berth.step.drawing.slew(before ?? '', after ?? '');
 }
 
 /** How far a corrector reaches to either side. */

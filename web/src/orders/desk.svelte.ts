@@ -26,6 +26,7 @@ export class Desk {
     this.order.value ? ahead(this.order.value, this.writes, this.offer.value) : undefined,
   );
   #offeredFor = '';
+  #foundAs = '';
 
   constructor(id: string) {
     this.id = id;
@@ -81,12 +82,20 @@ export class Desk {
   async #follow(): Promise<void> {
     const order = this.order.value;
     if (!order || this.order.problem) return;
-    if (!this.binnacle.value || this.binnacle.problem) await this.#loadBinnacle(order);
+    const found = JSON.stringify(order.as_found);
+    if (!this.binnacle.value || this.binnacle.problem || found !== this.#foundAs) {
+      // A report of the correctors as found may revise the record.
+      await this.loadBinnacle();
+      this.#foundAs = found;
+    }
     await this.#keep();
     await this.loadOffer();
   }
 
-  async #loadBinnacle(order: WorkOrder): Promise<void> {
+  /** Asks for the record of the correctors as it is now. */
+  loadBinnacle = async (): Promise<void> => {
+    const order = this.order.value;
+    if (!order) return;
     const { vessel_id, compass_id, state } = order;
     if (!order.has_binnacle) {
       this.binnacle.show(null, new Date());
@@ -96,7 +105,7 @@ export class Desk {
       // A firm's business only until the work is done.
       await this.binnacle.load(() => findOrderBinnacle(this.id));
     }
-  }
+  };
 
   async #keep(): Promise<void> {
     const order = this.order.value;

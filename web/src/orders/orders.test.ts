@@ -12,7 +12,16 @@ import { ahead, expectedDeg, isAsExpected, offBy, wrapped } from './ahead';
 import { lineOf } from './log';
 import { callNeeds, inOrder, isOpen, stateName, whatNext } from './order';
 import { correctorName, standing, written } from './places';
-import { draftOf, fault, headingOf, horizontalNt, newReading, number, readingOf } from './reading';
+import {
+  draftOf,
+  fault,
+  headingOf,
+  horizontalNt,
+  newReading,
+  number,
+  readingOf,
+  sentDraft,
+} from './reading';
 import { feeInWords, feeOf, isFee, termsInWords } from './terms';
 import { bearsOut, builtOn, isRefusal, nextToSend, type Content, type Write } from './writes';
 
@@ -235,6 +244,23 @@ describe('a reading', () => {
     const again = draftOf({ ...readingOf(good), compass_deg: 310.5 }, now);
     expect(again).toMatchObject({ heading: '312', compass: '310.5', forward: '', starboard: '' });
     expect(readingOf({ ...again, forward: '1', starboard: '1' }).lon).toBeCloseTo(-3.04);
+  });
+
+  test('takes one on another heading whole, beside the first as it was sent', () => {
+    const first = { ...readingOf(good), at: '2026-11-22T07:05:00Z' };
+    const sent = sentDraft(first, now);
+    expect(sent).toMatchObject({ forward: '17.2', starboard: '-14.9' });
+    expect(readingOf(sent).at).toBe('2026-11-22T07:05:00.000Z');
+    expect('shifted' in readingOf(sent)).toBe(false);
+    const shifted = { ...sent, shiftedHeading: '72', shiftedForward: '14', shiftedStarboard: '-2' };
+    expect(fault(shifted)).toBeNull();
+    expect(readingOf(shifted).shifted).toEqual({
+      heading_true_deg: 72,
+      forward: 14,
+      starboard: -2,
+    });
+    expect(fault({ ...shifted, shiftedForward: '' })?.field).toBe('shiftedForward');
+    expect(fault({ ...shifted, shiftedHeading: '340' })?.field).toBe('shiftedHeading');
   });
 
   test('takes no half number and no heading beyond 360', () => {

@@ -7,6 +7,7 @@ import type { BerthReading } from '../api/types';
 import { latitude, longitude, parseAngle } from '../format';
 import { field, instant } from '../logbook';
 import * as text from '../text';
+import { wrapped } from './ahead';
 
 /** What stands in the fields; an empty one is no value. */
 export interface ReadingDraft {
@@ -27,6 +28,10 @@ export interface ReadingDraft {
   heel: string;
   steel: boolean;
   cargo: boolean;
+  /** Where the ship was shifted to another heading of the berth. */
+  shiftedHeading: string;
+  shiftedForward: string;
+  shiftedStarboard: string;
 }
 
 export const units: BerthReading['unit'][] = ['microtesla', 'nanotesla', 'gauss', 'milligauss'];
@@ -65,13 +70,28 @@ export function newReading(now: Date): ReadingDraft {
     heel: '',
     steel: false,
     cargo: false,
+    shiftedHeading: '',
+    shiftedForward: '',
+    shiftedStarboard: '',
+  };
+}
+
+/** What is typed as a number or not at all. */
+const typed = (value: number | null | undefined) => ((value ?? null) === null ? '' : String(value));
+
+/** The reading as it was sent, to which one on another heading is added. */
+export function sentDraft(reading: BerthReading, now: Date): ReadingDraft {
+  return {
+    ...draftOf(reading, now),
+    at: field(new Date(reading.at)),
+    forward: typed(reading.forward),
+    starboard: typed(reading.starboard),
+    down: typed(reading.down),
   };
 }
 
 /** A reading to be read again: all that does not change from one to the next. */
 export function draftOf(reading: BerthReading, now: Date): ReadingDraft {
-  const typed = (value: number | null | undefined) =>
-    (value ?? null) === null ? '' : String(value);
   return {
     ...newReading(now),
     lat: latitude(reading.lat),
@@ -147,6 +167,29 @@ export function fault(draft: ReadingDraft): { field: Field; message: string } | 
       return { field: name, message: wrong.sd };
     }
   }
+  return faultOfShifted(draft);
+}
+
+/** Part of the reading on another heading: all three figures, or none. */
+const shiftedFields = ['shiftedHeading', 'shiftedForward', 'shiftedStarboard'] as const;
+const isShifted = (draft: ReadingDraft) => shiftedFields.some((name) => draft[name].trim() !== '');
+/** The least that the other heading is off, degrees. */
+const leastShiftDeg = 30;
+
+function faultOfShifted(draft: ReadingDraft): { field: Field; message: string } | null {
+  if (!isShifted(draft)) return null;
+  const { wrong, ...t } = text.berth.reading;
+  const [first, other] = [headingOf(draft.heading), headingOf(draft.shiftedHeading)];
+  if (other === null) return { field: 'shiftedHeading', message: wrong.heading(t.shiftedHeading) };
+  if (Math.abs(wrapped(other - (first ?? 0))) < leastShiftDeg) {
+    return { field: 'shiftedHeading', message: wrong.shifted };
+  }
+  for (const [name, label] of [
+    ['shiftedForward', t.shiftedForward],
+    ['shiftedStarboard', t.shiftedStarboard],
+  ] as const) {
+    if (number(draft[name]) === null) return { field: name, message: wrong.number(label) };
+  }
   return null;
 }
 
@@ -173,6 +216,13 @@ export function readingOf(draft: ReadingDraft): BerthReading {
   if ((down ?? null) !== null) reading.down = down ?? 0;
   if (headingSd) reading.heading_sd_deg = headingSd;
   if (fieldSd) reading.field_sd_nt = fieldSd;
+  if (isShifted(draft)) {
+    reading.shifted = {
+      heading_true_deg: headingOf(draft.shiftedHeading) ?? 0,
+      forward: number(draft.shiftedForward) ?? 0,
+      starboard: number(draft.shiftedStarboard) ?? 0,
+    };
+  }
   if (draft.serial.trim() !== '') reading.magnetometer_serial = draft.serial.trim();
   return reading;
 }

@@ -55,6 +55,7 @@ export const berth = translate('berth', {
       ship: 'The ship',
       field: 'The field',
       doubt: 'What could spoil it',
+      shifted: 'On another heading of the berth',
     },
     at: 'Read at',
     lat: 'Latitude',
@@ -68,6 +69,12 @@ export const berth = translate('berth', {
       model_reference: 'the model’s gyro or satellite compass',
       ashore: 'ashore: quay, marks or the sun',
     },
+    shiftedLead:
+      'Where a plan advises it: the ship shifted by 30 degrees or more, the same magnetometer, nothing moved. It shows steel on the quay.',
+    sent: 'Fill in the first reading as it was sent',
+    shiftedHeading: 'True heading there',
+    shiftedForward: 'Field there, forward',
+    shiftedStarboard: 'Field there, to starboard',
     compass: 'The compass read, before the bowl came out',
     compassHelp: 'Steps are checked from here',
     unit: 'Unit of the magnetometer',
@@ -111,6 +118,7 @@ export const berth = translate('berth', {
       heading: (what: string) => `${what}: between 0 and 360.`,
       heel: 'Heel: between −30 and 30 degrees.',
       sd: 'The error has to be greater than 0.',
+      shifted: 'The other heading has to be 30 degrees off, at least.',
     },
   },
   found: {
@@ -133,6 +141,10 @@ export const berth = translate('berth', {
     sound: 'sound, or mended',
     defective: 'defective',
     turned: 'Turn each Kelvin sphere in its place: the most that the compass moved, degrees',
+    again: 'Report again as found',
+    repair: 'To be repaired before planning:',
+    photos: 'Photographs that show the correctors',
+    untitled: 'Photograph without caption',
     submit: 'This is how it was found',
     offline: 'The record of the correctors comes from ashore: as soon as there is a connection.',
     wrong: {
@@ -182,6 +194,8 @@ export const berth = translate('berth', {
       fromAft: 'Seen from aft.',
       fromStarboard: 'Seen from starboard.',
       faint: 'Faint: how it was before this step.',
+      slew: (before: string, after: string) =>
+        `The slew is not drawn: ${before} before this step, ${after} after it.`,
     },
     nowhere: 'not in use',
     out: 'out, to the spares',

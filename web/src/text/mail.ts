@@ -5,12 +5,18 @@ import { translate } from './language';
 
 export const webhooks = translate('webhooks', {
   title: 'Webhooks',
-  lead: 'Programs of yours that are told of alerts. Each message is signed; the help has how to verify that.',
-  none: 'No program is told of alerts yet.',
+  lead: 'Programs and chats of yours that hear of alerts and work orders. Each message is signed; the help has how to verify that.',
+  none: 'No program or chat hears of alerts yet.',
   noneViewer: 'An administrator of your company makes webhooks.',
   add: 'Add a webhook',
   url: 'Address',
-  kinds: 'Told of',
+  format: 'For',
+  formats: {
+    binnacle: 'A program',
+    slack: 'Slack, Mattermost or Rocket.Chat',
+    teams: 'Microsoft Teams',
+  },
+  kinds: 'Send',
   urlMissing: 'Enter an address that begins with https://.',
   kindsMissing: 'Choose at least one.',
   create: 'Make the webhook',
@@ -24,7 +30,7 @@ export const webhooks = translate('webhooks', {
   test: 'Send a test',
   tested: 'A test is on its way.',
   remove: 'Remove',
-  removeQuestion: 'Remove this webhook, with what it was still to be told?',
+  removeQuestion: 'Remove this webhook, with the messages that wait for it?',
   removeConfirm: 'Remove the webhook',
 });
 

@@ -3,8 +3,8 @@
 //! A copy of the compass comes late, now more and now less. One by one it is some reading of the
 //! last moments, to its digits: where a compass is read once a second or the ship yaws much, that
 //! shows. Where it is read often, any of its readings may be the one, and only means show that the
-//! two never part. Displays and autopilots smooth what they repeat: so the means are also of the
-//! compass smoothed. An independent instrument differs either way.
+//! two never part. Displays and autopilots damp or average what they repeat: so the means are also of
+//! the compass smoothed. An independent instrument differs either way.
 
 use binnacle_analysis::fit::{HeadingPair, SharedNoise, weigh_independence};
 use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation, wrap_180, wrap_360};
@@ -22,9 +22,13 @@ const READINGS_OF_MEAN: usize = 20;
 /// Readings from one mean to the next. Means that overlap are not counted twice: what counts is
 /// the number of headings.
 const READINGS_TO_NEXT: usize = 10;
-/// Time constants by which a repeater may smooth the compass, seconds: none, and steps of damping.
-/// Between two of them it is a mix of both, very nearly.
-const SMOOTHING_S: [f64; 7] = [0.0, 2.0, 3.0, 4.5, 6.5, 9.5, 14.0];
+/// Time constants by which a repeater may damp the compass, seconds, in steps. Between two of them it
+/// is a mix of both, very nearly.
+const DAMPING_S: [f64; DAMPINGS] = [2.0, 3.0, 4.5, 6.5, 9.5, 12.0, 15.0];
+const DAMPINGS: usize = 7;
+/// Times over which it may average, seconds, likewise.
+const AVERAGE_S: [f64; AVERAGES] = [3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 12.5, 16.0, 20.0];
+const AVERAGES: usize = 9;
 /// Interval of the readings of the reference that count, seconds.
 const INTERVAL_S: f64 = 1.0;
 /// Longest gap within a mean, seconds: some receivers give the time every few seconds.
@@ -52,12 +56,14 @@ pub(super) struct Circumstances {
 #[derive(Debug, Default)]
 pub(super) struct RecentCompass {
     readings: VecDeque<CompassHeading>,
+    /// Readings of the longest average, without a step at north, the newest last, degrees.
+    averaged_deg: VecDeque<f64>,
     /// Readings since the clock advanced, and a second before.
     since_advance: usize,
     rate_hz: f64,
     advanced: Option<Timestamp>,
-    /// Compass as each time constant smooths it, degrees.
-    smoothed_deg: Option<[f64; SMOOTHING_S.len()]>,
+    /// Compass as each time constant damps it, degrees.
+    damped_deg: Option<[f64; DAMPINGS]>,
 }
 
 impl RecentCompass {
@@ -74,7 +80,8 @@ impl RecentCompass {
         // A compass that is read no more makes no pair.
         if self.rate_hz <= 0.0 {
             self.readings.clear();
-            self.smoothed_deg = None;
+            self.averaged_deg.clear();
+            self.damped_deg = None;
         }
     }
 
@@ -85,17 +92,44 @@ impl RecentCompass {
             self.readings.pop_front();
         }
         self.readings.push_back(compass);
-        self.smooth(compass.degrees());
+        self.damp(compass.degrees());
+        let last = self.averaged_deg.back().copied();
+        let step = last.map(|last| last + wrap_180(compass.degrees() - last));
+        self.averaged_deg
+            .push_back(step.unwrap_or(compass.degrees()));
+        let kept = self.readings_in(AVERAGE_S[AVERAGES - 1]);
+        let old = self.averaged_deg.len().saturating_sub(kept);
+        self.averaged_deg.drain(..old);
     }
 
-    fn smooth(&mut self, compass_deg: f64) {
-        let known = self.smoothed_deg.filter(|_| self.rate_hz > 0.0);
-        let mut smoothed_deg = known.unwrap_or([compass_deg; SMOOTHING_S.len()]);
-        for (smoothed, constant_s) in smoothed_deg.iter_mut().zip(SMOOTHING_S) {
+    fn damp(&mut self, compass_deg: f64) {
+        let known = self.damped_deg.filter(|_| self.rate_hz > 0.0);
+        let mut damped_deg = known.unwrap_or([compass_deg; DAMPINGS]);
+        for (damped, constant_s) in damped_deg.iter_mut().zip(DAMPING_S) {
             let share = -(-1.0 / (self.rate_hz * constant_s)).exp_m1();
-            *smoothed += share.min(1.0) * wrap_180(compass_deg - *smoothed);
+            *damped += share.min(1.0) * wrap_180(compass_deg - *damped);
         }
-        self.smoothed_deg = Some(smoothed_deg);
+        self.damped_deg = Some(damped_deg);
+    }
+
+    /// Returns the number of readings in a time.
+    fn readings_in(&self, seconds: f64) -> usize {
+        ((self.rate_hz * seconds).round() as usize).max(1)
+    }
+
+    /// Returns how far the compass is from a heading once it is smoothed, degrees.
+    fn smoothed_off(&self, heading: CompassHeading) -> Option<SmoothedOff> {
+        let off = |degrees: f64| wrap_180(degrees - heading.degrees());
+        let mean = |seconds: f64| {
+            let count = self.readings_in(seconds).min(self.averaged_deg.len());
+            let sum: f64 = self.averaged_deg.iter().rev().take(count).sum();
+            sum / count as f64
+        };
+        let averaged = (!self.averaged_deg.is_empty()).then(|| AVERAGE_S.map(mean))?;
+        Some(SmoothedOff {
+            damped_deg: self.damped_deg?.map(off),
+            averaged_deg: averaged.map(off),
+        })
     }
 
     /// Returns the readings that a copy may repeat, the latest first.
@@ -123,11 +157,18 @@ struct Means {
     latest: VecDeque<Smoothed>,
 }
 
-/// A pair, and how far the compass smoothed by each time constant is from its own reading, degrees.
+/// A pair, and how far the compass is from its own reading once it is smoothed.
 #[derive(Clone, Copy, Debug)]
 struct Smoothed {
     pair: HeadingPair,
-    off_deg: [f64; SMOOTHING_S.len()],
+    off: SmoothedOff,
+}
+
+/// Differences of the compass, damped and averaged, from its own reading.
+#[derive(Clone, Copy, Debug)]
+struct SmoothedOff {
+    damped_deg: [f64; DAMPINGS],
+    averaged_deg: [f64; AVERAGES],
 }
 
 /// Reading of the reference with the latest reading of the compass, and with the nearest.
@@ -174,13 +215,11 @@ impl ReferencePairs {
         };
         self.singles.add(single);
         let middle = middle(compass.candidates(), latest);
-        let off_deg = compass
-            .smoothed_deg
-            .map_or([0.0; SMOOTHING_S.len()], |smoothed| {
-                smoothed.map(|degrees| wrap_180(degrees - middle.degrees()))
-            });
+        let Some(off) = compass.smoothed_off(middle) else {
+            return;
+        };
         let pair = pair(middle);
-        self.new_means += u32::from(self.means.add(Smoothed { pair, off_deg }, at.time));
+        self.new_means += u32::from(self.means.add(Smoothed { pair, off }, at.time));
     }
 
     /// Returns whether the pairs are to be weighed.
@@ -241,23 +280,39 @@ impl Means {
         means.sort_by_key(|mean| mean.pair.time);
         let pairs: Vec<_> = means.iter().map(|mean| mean.pair).collect();
         let mut weighed = vec![weigh_independence(&pairs)?];
-        for step in 1..SMOOTHING_S.len() {
+        let none = |_: &Smoothed| 0.0;
+        let mut mix = |less: &Smoothing<'_>, more: &Smoothing<'_>| {
             // A smoothed compass may hardly turn: then it proves nothing.
-            weighed.extend(weigh_independence(&mixed(&means, step)));
+            weighed.extend(weigh_independence(&mixed(&means, less, more)));
+        };
+        mix(&none, &|mean| mean.off.damped_deg[0]);
+        for step in 1..DAMPINGS {
+            mix(&|mean| mean.off.damped_deg[step - 1], &|mean| {
+                mean.off.damped_deg[step]
+            });
+        }
+        mix(&none, &|mean| mean.off.averaged_deg[0]);
+        for step in 1..AVERAGES {
+            mix(&|mean| mean.off.averaged_deg[step - 1], &|mean| {
+                mean.off.averaged_deg[step]
+            });
         }
         Some(weighed)
     }
 }
 
+/// Difference of a smoothed compass from its own reading, degrees.
+type Smoothing<'a> = dyn Fn(&Smoothed) -> f64 + 'a;
+
 /// Returns pairs with the mix of the compass between two steps of smoothing that the reference
 /// follows best.
-fn mixed(means: &[Smoothed], step: usize) -> Vec<HeadingPair> {
+fn mixed(means: &[Smoothed], less: &Smoothing<'_>, more: &Smoothing<'_>) -> Vec<HeadingPair> {
     let (mut product, mut square) = (0.0, 0.0);
     for two in means.windows(2) {
-        let change = |value: &dyn Fn(&Smoothed) -> f64| wrap_180(value(&two[1]) - value(&two[0]));
-        let smoother = change(&|mean| mean.off_deg[step] - mean.off_deg[step - 1]);
+        let change = |value: &Smoothing<'_>| wrap_180(value(&two[1]) - value(&two[0]));
+        let smoother = change(&|mean| more(mean) - less(mean));
         let apart = change(&|mean| {
-            let compass_deg = mean.pair.compass.degrees() + mean.off_deg[step - 1];
+            let compass_deg = mean.pair.compass.degrees() + less(mean);
             mean.pair.reference.degrees() - compass_deg
         });
         product += smoother * apart;
@@ -269,7 +324,7 @@ fn mixed(means: &[Smoothed], step: usize) -> Vec<HeadingPair> {
         0.0
     };
     let mix = |mean: &Smoothed| {
-        let off_deg = mean.off_deg[step - 1] * (1.0 - share) + mean.off_deg[step] * share;
+        let off_deg = less(mean) * (1.0 - share) + more(mean) * share;
         let compass = CompassHeading::new(mean.pair.compass.degrees() + off_deg);
         HeadingPair {
             compass: compass.unwrap_or(mean.pair.compass),
@@ -290,14 +345,17 @@ fn mean(all: &VecDeque<Smoothed>, about: HeadingPair) -> Smoothed {
     };
     let compass = CompassHeading::new(mean_of(|pair| pair.compass.degrees()));
     let reference = TrueHeading::new(mean_of(|pair| pair.reference.degrees()));
-    let off = |step: usize| all.iter().map(|one| one.off_deg[step]).sum::<f64>() / count;
+    let mean = |value: &Smoothing<'_>| all.iter().map(value).sum::<f64>() / count;
     Smoothed {
         pair: HeadingPair {
             compass: compass.unwrap_or(about.compass),
             reference: reference.unwrap_or(about.reference),
             ..about
         },
-        off_deg: std::array::from_fn(off),
+        off: SmoothedOff {
+            damped_deg: std::array::from_fn(|step| mean(&|one| one.off.damped_deg[step])),
+            averaged_deg: std::array::from_fn(|step| mean(&|one| one.off.averaged_deg[step])),
+        },
     }
 }
 

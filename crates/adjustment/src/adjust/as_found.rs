@@ -8,7 +8,12 @@ use super::inputs::Adjustment;
 use super::instructions::{Step, compass_turn, replaced, reversed, stands};
 use super::state::MagneticState;
 use crate::binnacle::Binnacle;
+use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::NORMAL_99;
+
+/// Prior probability of magnets that stood with the other end than recorded, after someone
+/// confirmed the record.
+pub(crate) const FOUND_OTHERWISE: f64 = 0.002;
 
 /// The binnacle with a step's magnets reversed at the reading, and the resulting turn.
 pub(crate) struct FoundOtherwise {
@@ -45,4 +50,20 @@ impl FoundOtherwise {
             binnacle,
         })
     }
+
+    /// Returns the observed less the resulting turn, degrees.
+    pub(crate) fn off_deg(&self, turned_deg: f64) -> f64 {
+        wrap_180(turned_deg - self.change_deg)
+    }
+
+    /// Logarithm of its prior probability times the density of the turn, per degree.
+    pub(crate) fn log_weight(&self, turned_deg: f64) -> f64 {
+        let sd_deg = self.tolerance_deg / NORMAL_99;
+        FOUND_OTHERWISE.ln() + log_density(self.off_deg(turned_deg), sd_deg)
+    }
+}
+
+/// Logarithm of a normal density but for its constant.
+pub(crate) fn log_density(off: f64, sd: f64) -> f64 {
+    -(off / sd).powi(2) / 2.0 - sd.ln()
 }

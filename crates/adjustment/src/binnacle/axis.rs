@@ -14,7 +14,7 @@ pub enum Axis {
 }
 
 /// Direction of the red, north-seeking end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "openapi", schema(as = RedEnd))]
 #[serde(rename_all = "snake_case")]

@@ -11,10 +11,10 @@ use serde::{Deserialize, Deserializer, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Setting {
     /// Fore-and-aft magnets by hole.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "in_order")]
     pub fore_and_aft: Vec<Tray>,
     /// Athwartship magnets by hole.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "in_order")]
     pub athwartship: Vec<Tray>,
     /// Spheres, boxes or plates.
     #[serde(default)]
@@ -121,6 +121,16 @@ impl Setting {
             flinders: self.flinders.clone(),
         }
     }
+}
+
+/// Reads the magnets of an axis, by hole, kind and end: the order in which someone names them
+/// makes no other setting.
+fn in_order<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Tray>, D::Error> {
+    let mut trays = Vec::<Tray>::deserialize(from)?;
+    trays.sort_by(|a, b| {
+        (a.hole, &a.magnet, a.red, a.count).cmp(&(b.hole, &b.magnet, b.red, b.count))
+    });
+    Ok(trays)
 }
 
 /// Reads the number of a hole or position.

@@ -5,17 +5,17 @@ use crate::ship::{EarthField, PARAMETERS};
 
 impl Model {
     /// Returns the seven ratios at a place: those of the model, with the needles' part of D
-    /// and E in this horizontal field (docs/science.md, eq. 20).
+    /// and E in this horizontal field (docs/science.md, eq. 18).
     pub fn parameters_at(&self, earth: EarthField) -> Parameters {
         let parameters = self.parameters_over_lambda;
         let Some(needles) = &self.needles else {
             return parameters;
         };
-        let [.., d, b, e] = needles.change(earth);
+        let [.., chi11_minus_chi22, chi12, chi21] = needles.change(earth);
         Parameters {
-            chi11_minus_chi22: parameters.chi11_minus_chi22 + d,
-            chi12: parameters.chi12 + b,
-            chi21: parameters.chi21 + e,
+            chi11_minus_chi22: parameters.chi11_minus_chi22 + chi11_minus_chi22,
+            chi12: parameters.chi12 + chi12,
+            chi21: parameters.chi21 + chi21,
             ..parameters
         }
     }

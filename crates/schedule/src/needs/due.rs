@@ -48,13 +48,24 @@ pub fn due(
     let mut causes = causes::find_causes(ship, compass, rules, terms, today);
     // Among causes of one day, the first named gives the reason.
     causes.sort_by_key(|cause| cause.due);
-    let first = causes.first()?;
+    let leading = leading(&causes, terms, today)?;
     Some(Due {
-        on: first.due,
-        urgency: find_urgency(first, terms, today),
-        reason: first.reason.clone(),
+        on: leading.due,
+        urgency: find_urgency(leading, terms, today),
+        reason: leading.reason.clone(),
         causes,
     })
+}
+
+/// Returns the cause that a need is judged by: the earliest. A missing record, whose day is one to
+/// arrange an adjustment by, hides nothing whose term runs already.
+fn leading<'a>(causes: &'a [Cause], terms: &Terms, today: NaiveDate) -> Option<&'a Cause> {
+    let days = terms.after_event_days.max(terms.over_limit_days);
+    let last = today.checked_add_days(Days::new(days.into()));
+    let runs = |cause: &&Cause| {
+        cause.kind != CauseKind::NeverAdjusted && last.is_none_or(|last| cause.due <= last)
+    };
+    causes.iter().find(runs).or(causes.first())
 }
 
 impl Terms {

@@ -85,15 +85,17 @@ pub fn describe_unknown(code: PortCode) -> String {
     }
 }
 
-/// Finds the ports that words name: by a code, by a name, or by a name with its code in brackets.
+/// Finds the ports that words name: by a code, by a name, or by any place's name with the port's
+/// code in brackets.
 /// Several may share a name, and a name may be another port's code.
 pub fn named(words: &str) -> Vec<&'static Port> {
     let by_code = |text: &str| PortCode::parse(text).ok().and_then(find);
     if let Some((name, code)) = words.trim().rsplit_once('(')
         && let Some(port) = code.strip_suffix(')').and_then(by_code)
     {
-        // Another port's name contradicts the code.
-        let is_called = called(name).iter().any(|named| named.code == port.code);
+        // Another port's name contradicts the code; a terminal's, as Europoort's, does not.
+        let others = called(name);
+        let is_called = others.is_empty() || others.iter().any(|named| named.code == port.code);
         return Vec::from_iter(is_called.then_some(port));
     }
     let of_name = called(words).iter().copied();
@@ -247,6 +249,7 @@ mod tests {
         // One port's name is another's code.
         assert_eq!(codes("Trana"), ["NOTRN", "TRANA"]);
         assert!(codes("Rotterdam (ESBIO)").is_empty());
+        assert_eq!(codes("Europoort (NLRTM)"), ["NLRTM"]);
     }
 
     #[test]

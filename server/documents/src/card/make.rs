@@ -10,8 +10,9 @@ use super::contents::{
     predicted_at_berth, verified,
 };
 use super::due::{self, next_due};
-use super::observed::{Observed, STEP_DEG};
-use super::refusal::{OLDEST_DAYS, Refusal};
+use super::observed::Observed;
+use super::refusal::Refusal;
+use super::tables::{NO_BAND_DEG, Tables, tables};
 use binnacle_compass::deviation::{Coefficients as Exact, DeviationError};
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::model::Model;
@@ -25,12 +26,6 @@ use binnacle_fleet::models::StoredModel;
 use binnacle_platform::error::{self, Error};
 use binnacle_platform::signing_keys::ServerKey;
 use binnacle_platform::time::Time;
-
-/// Degrees of compass heading between points of the curve.
-const CURVE_STEP_DEG: f64 = 5.0;
-
-/// A band that excludes no heading.
-const NO_BAND_DEG: f64 = 180.0;
 
 /// Records that a card is made from.
 pub(super) struct CardInput {
@@ -66,15 +61,16 @@ pub(super) struct CardInput {
 pub(super) fn make(input: CardInput) -> error::Result<Card> {
     let CardInput { model, place, .. } = &input;
     not_suspected(&input.alerts)?;
-    not_too_old(model.data_until, place.at.max(input.now))?;
     let earth = EarthField {
         h_nt: place.h_nt,
         z_nt: place.z_nt,
     };
     let ship = &model.model.0;
-    let curve = deviation::table(ship, earth, CURVE_STEP_DEG).map_err(Refusal::from)?;
-    let widest_band95_deg = widest(&curve, input.limit_deg)?;
-    let lines = deviation::table(ship, earth, STEP_DEG).map_err(Refusal::from)?;
+    let Tables {
+        curve,
+        lines,
+        widest_band95_deg,
+    } = tables(model, earth, input.limit_deg, place.at.max(input.now))?;
     let coefficients = coefficients(ship, earth)?;
     let at = place.at;
     let cargo = cargo_at(&input.logbook, at);
@@ -220,33 +216,6 @@ fn not_suspected(alerts: &[OpenAlert]) -> Result<(), Refusal> {
         }),
         None => Ok(()),
     }
-}
-
-fn not_too_old(data_until: Time, at: Time) -> Result<(), Refusal> {
-    let days = at.0.seconds_since(data_until.0) / 86_400.0;
-    if days > OLDEST_DAYS {
-        return Err(Refusal::TooOld { data_until, days });
-    }
-    Ok(())
-}
-
-fn widest(curve: &[DeviationRow], limit_deg: f64) -> Result<f64, Refusal> {
-    let (mut widest_deg, mut compass_deg) = (0.0, 0.0);
-    for row in curve {
-        // Without a covariance the band is unknown.
-        let band95_deg = row.band95_deg.unwrap_or(NO_BAND_DEG);
-        if band95_deg > widest_deg {
-            (widest_deg, compass_deg) = (band95_deg, row.compass_deg);
-        }
-    }
-    if widest_deg > limit_deg {
-        return Err(Refusal::BandTooWide {
-            band95_deg: widest_deg,
-            compass_deg,
-            limit_deg,
-        });
-    }
-    Ok(widest_deg)
 }
 
 fn line(row: &DeviationRow, observed: Observed) -> CardRow {

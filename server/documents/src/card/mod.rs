@@ -18,6 +18,7 @@ mod layout;
 mod make;
 mod observed;
 mod refusal;
+mod tables;
 
 pub use contents::{Card, CardStatus};
 pub use refusal::Refusal;

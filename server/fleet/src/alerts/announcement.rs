@@ -8,6 +8,7 @@ use binnacle_platform::notices::{DeclaredKind, DefaultMail, Notice, NoticesPubli
 use binnacle_platform::outbox::{Kind, Message};
 use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
+use binnacle_platform::webhooks::Words;
 use serde::Serialize;
 use serde_json::json;
 use utoipa::ToSchema;
@@ -32,6 +33,8 @@ pub struct AlertMessage<'a> {
     kind: Kind,
     /// Time of the event.
     at: Time,
+    /// The message in words.
+    words: Words,
     /// The alert at that moment.
     alert: &'a Alert,
 }
@@ -50,6 +53,11 @@ pub(super) fn message(change: &AlertChange, now: Time) -> Message {
             id: *id,
             kind,
             at: now,
+            words: Words {
+                headline: words_of(change).0,
+                text: alert.summary.clone(),
+                path: format!("/alerts#{}", alert.id),
+            },
             alert,
         })
         .to_string(),

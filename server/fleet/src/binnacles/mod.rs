@@ -13,7 +13,7 @@ mod setting_text;
 mod store;
 
 pub use setting_text::describe_setting;
-pub use store::{Author, StoredRevision, current, current_in, insert};
+pub use store::{Author, StoredRevision, current, current_in, insert, lock};
 
 use crate::compasses;
 use crate::vessels;

@@ -75,6 +75,17 @@ pub async fn current_in(
     )
 }
 
+/// Makes other writers of a compass's binnacle wait for the end of a transaction.
+pub async fn lock(tx: &mut Tx, vessel: VesselId, compass: CompassId) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE compasses SET name = name WHERE vessel_id = $1 AND id = $2",
+        vessel,
+        compass
+    )?;
+    Ok(())
+}
+
 /// Returns the version of a compass's binnacle as a transaction sees it.
 pub(super) async fn current_version(
     tx: &mut Tx,
@@ -187,13 +198,7 @@ pub async fn insert(
     reason: Option<&str>,
     author: &Author,
 ) -> Result<()> {
-    // Concurrent writers of a revision wait.
-    execute!(
-        &mut *tx,
-        "UPDATE compasses SET name = name WHERE vessel_id = $1 AND id = $2",
-        vessel,
-        compass
-    )?;
+    lock(tx, vessel, compass).await?;
     let last = row!(
         in &mut *tx,
         (i64, String),

@@ -17,7 +17,7 @@ mod store;
 pub use agent_reports::router as agent_router;
 pub(crate) use entry::AuthorKind;
 pub(crate) use store::Change;
-pub use store::{AdjustmentEntry, of_compass, write_adjustment};
+pub use store::{CompassWork, of_compass, write_compass_work};
 
 use crate::vessels;
 use amendment::Amendment;

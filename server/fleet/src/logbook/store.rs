@@ -5,6 +5,7 @@ use crate::agent_auth::Agent;
 use crate::analysis_queue;
 use crate::event_kinds;
 use anyhow::Context;
+use binnacle_compass::logbook::LogbookKind;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::db::{Db, Tx, execute, row, rows};
@@ -129,9 +130,10 @@ impl Author {
     }
 }
 
-/// An adjustment as a work order writes it.
+/// Work on a compass as a work order writes it.
 #[allow(missing_docs, reason = "they are an entry's parts")]
-pub struct AdjustmentEntry<'a> {
+pub struct CompassWork<'a> {
+    pub kind: LogbookKind,
     pub id: EntryId,
     pub vessel: VesselId,
     pub compass: CompassId,
@@ -143,31 +145,31 @@ pub struct AdjustmentEntry<'a> {
     pub now: Time,
 }
 
-/// Writes an adjustment at its time, and enqueues an analysis of the vessel.
-pub async fn write_adjustment(tx: &mut Tx, adjusted: &AdjustmentEntry<'_>) -> Result<()> {
+/// Writes work on a compass at its time, and enqueues an analysis of the vessel.
+pub async fn write_compass_work(tx: &mut Tx, work: &CompassWork<'_>) -> Result<()> {
     let entry = NewEntry {
         report: Report {
-            kind: binnacle_compass::logbook::LogbookKind::Adjustment,
-            from: adjusted.at.0,
+            kind: work.kind,
+            from: work.at.0,
             to: None,
             cargo: None,
             hatch: None,
             // A logbook's port is shorter than an order's.
-            port: Some(adjusted.port.chars().take(100).collect()),
-            note: adjusted.note.to_owned(),
+            port: Some(work.port.chars().take(100).collect()),
+            note: work.note.to_owned(),
         },
-        compass_id: Some(adjusted.compass),
+        compass_id: Some(work.compass),
     };
-    let entry = entry.checked(adjusted.now.0)?;
+    let entry = entry.checked(work.now.0)?;
     let author = Author {
         kind: AuthorKind::User,
-        id: adjusted.author_id,
-        name: adjusted.author_name.to_owned(),
-        at: adjusted.now,
+        id: work.author_id,
+        name: work.author_name.to_owned(),
+        at: work.now,
         board_revision: None,
     };
-    insert(tx, adjusted.vessel, adjusted.id, &entry, &author).await?;
-    analysis_queue::enqueue(tx, adjusted.vessel, adjusted.now, 0.0).await?;
+    insert(tx, work.vessel, work.id, &entry, &author).await?;
+    analysis_queue::enqueue(tx, work.vessel, work.now, 0.0).await?;
     Ok(())
 }
 

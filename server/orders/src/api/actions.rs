@@ -11,6 +11,7 @@ use crate::work_orders::state::State;
 use crate::work_orders::{load_order, prepare_update};
 use axum::extract::State as Shared;
 use binnacle_adjustment::adjust::predict_by_compass;
+use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::model::Model;
 use binnacle_platform::access::{PartyWriter, Writer};
 use binnacle_platform::app::App;
@@ -62,7 +63,8 @@ pub(super) async fn remark(
 ///
 /// For the operator; a firm declines instead. Correctors that were moved keep their settings: the
 /// next revision of the binnacle and an entry in the logbook record them, and a predicted model
-/// lets the vessel be planned again.
+/// lets the vessel be planned again. There is no such model after a second reading that contradicts
+/// the steps, or a step that nothing explains: headings at sea make the next one.
 #[utoipa::path(post, path = "/work-orders/{id}/cancel", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = RemarkForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -86,9 +88,10 @@ pub(super) async fn cancel_work_order(
     if !stored.summary.state.is_under_way() {
         stored.require_state(&[], "it can no longer be cancelled")?;
     }
-    let left = predict_left(&slots, &stored.state()).await?;
+    let state = stored.state();
+    let left = predict_left(&slots, &state).await?;
     if let Some(mut change) = update.begin(&stored).await? {
-        if let Some(left) = left {
+        if state.has_moved_correctors() {
             record_moved_correctors(&mut change, left).await?;
         }
         change
@@ -99,9 +102,11 @@ pub(super) async fn cancel_work_order(
     load_order(&app, writer.operator, id).await
 }
 
-/// Predicts the model of a compass whose correctors were moved; `None` where none was.
+/// Predicts the model of a compass whose correctors were moved; `None` where none was, or where
+/// the compass or the magnetometer says that they do not stand as believed.
 async fn predict_left(slots: &CorrectorPlanSlots, state: &OrderState) -> Result<Option<Model>> {
-    if !state.has_moved_correctors() {
+    let is_disproved = state.has_unexplained_step || state.contradicting_reading().is_some();
+    if !state.has_moved_correctors() || is_disproved {
         return Ok(None);
     }
     if let Some(prediction) = state.confirmed_prediction() {
@@ -113,8 +118,8 @@ async fn predict_left(slots: &CorrectorPlanSlots, state: &OrderState) -> Result<
 }
 
 /// Records correctors that were moved although the order is cancelled, and the model of the
-/// compass that they leave.
-async fn record_moved_correctors(change: &mut Change<'_>, model: Model) -> Result<()> {
+/// compass that they leave, if it is known.
+async fn record_moved_correctors(change: &mut Change<'_>, model: Option<Model>) -> Result<()> {
     let state = change.stored.state();
     let (Some(binnacle), Some(setting)) = (&state.binnacle, state.setting()) else {
         return Ok(());
@@ -123,16 +128,18 @@ async fn record_moved_correctors(change: &mut Change<'_>, model: Model) -> Resul
         .with_setting(setting.clone())
         .map_err(binnacle_fleet::binnacles::invalid_binnacle)?;
     write_binnacle(change, &left, "left").await?;
-    let now = change.now;
-    let predicted = PredictedModel {
-        id: ModelId::new(),
-        at: now,
-        input_hash: sha256_hex(&serde_json::to_vec(&model)?),
-        model,
-    };
-    write_model(change, &state, predicted).await?;
-    let port = change.stored.summary.port.clone();
-    write_logbook(change, EntryId::new(), now, &port).await
+    let (kind, now) = (LogbookKind::CorrectorChange, change.now);
+    if let Some(model) = model {
+        let predicted = PredictedModel {
+            id: ModelId::new(),
+            at: now,
+            begun_by: kind,
+            input_hash: sha256_hex(&serde_json::to_vec(&model)?),
+            model,
+        };
+        write_model(change, &state, predicted).await?;
+    }
+    write_logbook(change, kind, EntryId::new(), now).await
 }
 
 /// Request to close an order.

@@ -4,17 +4,19 @@ use crate::berth_session::berth_api::BERTH_STATES;
 use crate::completion::complete::{write_binnacle, write_logbook};
 use crate::work_orders::events::OrderEvent;
 use crate::work_orders::order::Order;
+use crate::work_orders::order_update::Change;
 use crate::work_orders::payload::as_found::{AsFound, Difference, differences};
 use crate::work_orders::store::StoredOrder;
 use crate::work_orders::{load_order, prepare_update};
 use axum::extract::State as Shared;
 use binnacle_adjustment::binnacle::Binnacle;
+use binnacle_compass::logbook::LogbookKind;
 use binnacle_fleet::binnacles::{self, invalid_binnacle};
 use binnacle_platform::access::PartyWriter;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Valid};
+use binnacle_platform::http::{Id, Json, Valid, degrees};
 use binnacle_platform::idempotency::Key;
 use binnacle_platform::ids::{EntryId, OrderId};
 
@@ -47,24 +49,34 @@ pub(super) async fn report_as_found(
         "correctors are reported as found between going on board and the first step",
     )?;
     check_photos(&stored, &found)?;
-    let summary = &stored.summary;
-    let recorded = binnacles::current(&app.db, summary.vessel_id, summary.compass_id).await?;
-    let recorded = recorded.ok_or(Error::WrongState(
-        "the compass has no binnacle yet: enter it first".to_owned(),
-    ))?;
-    let corrected = compare(&recorded.binnacle.0, &found)?;
     if let Some(mut change) = update.begin(&stored).await? {
+        let recorded = lock_recorded(&mut change).await?;
+        let corrected = compare(&recorded, &found)?;
         if let Some(binnacle) = &corrected {
             write_binnacle(&mut change, binnacle, "found").await?;
         }
         if corrected.is_some() && found.difference == Some(Difference::MovedSince) {
-            let (now, port) = (change.now, change.stored.summary.port.clone());
-            write_logbook(&mut change, EntryId::new(), now, &port).await?;
+            let (kind, now) = (LogbookKind::CorrectorChange, change.now);
+            write_logbook(&mut change, kind, EntryId::new(), now).await?;
         }
         change.append(OrderEvent::AsFound(Box::new(found))).await?;
         change.commit().await?;
     }
     load_order(&app, writer.tenant, id).await
+}
+
+/// Returns the recorded binnacle, which nobody else changes before the end of the change.
+async fn lock_recorded(change: &mut Change<'_>) -> Result<Binnacle> {
+    let (vessel, compass) = {
+        let summary = &change.stored.summary;
+        (summary.vessel_id, summary.compass_id)
+    };
+    binnacles::lock(&mut change.tx, vessel, compass).await?;
+    let recorded = binnacles::current_in(&mut change.tx, vessel, compass).await?;
+    let recorded = recorded.ok_or(Error::WrongState(
+        "the compass has no binnacle yet: enter it first".to_owned(),
+    ))?;
+    Ok(recorded.binnacle.0)
 }
 
 /// Refuses a report after correctors were moved, and photographs of another order.
@@ -86,19 +98,28 @@ fn check_photos(stored: &StoredOrder, found: &AsFound) -> Result<()> {
     }
 }
 
+/// Field of the spheres' residual magnetism.
+const TURNED: &str = "dockside.spheres_turned_deg";
+
 /// Compares the setting with the record; returns the corrected binnacle where they differ.
 fn compare(recorded: &Binnacle, found: &AsFound) -> Result<Option<Binnacle>> {
     let corrected = recorded
         .with_setting(found.setting.clone())
         .map_err(invalid_binnacle)?;
-    let has_spheres = found.setting.quadrantal.is_some();
-    if has_spheres && found.dockside.spheres_turned_deg.is_none() {
-        return Err(Error::Invalid {
-            field: "dockside.spheres_turned_deg",
-            detail: "is required: turn each sphere in its place and watch the compass".to_owned(),
-        });
+    match found.dockside.spheres_turned_deg {
+        Some(turned_deg) => {
+            degrees(TURNED, turned_deg, 0.0, 180.0)?;
+        }
+        None if found.setting.quadrantal.is_some() => {
+            return Err(Error::Invalid {
+                field: TURNED,
+                detail: "is required: turn each sphere in its place and watch the compass"
+                    .to_owned(),
+            });
+        }
+        None => {}
     }
-    if found.setting == recorded.setting {
+    if corrected.setting == recorded.setting {
         return Ok(None);
     }
     let differing = differences(&recorded.setting, &found.setting).join("; ");

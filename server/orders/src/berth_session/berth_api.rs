@@ -1,6 +1,6 @@
 //! Handlers of the berth session: reading, plan, steps and corrector settings.
 
-use crate::berth_session::as_found::require_as_found;
+use crate::berth_session::as_found::{require_as_found, require_record_as_found};
 use crate::berth_session::berth_reading::{check, check_reading_ranges};
 use crate::berth_session::plan::{
     PlanChoice, offer_plans, refuse_magnetic_cargo, require_current_reading,
@@ -77,7 +77,7 @@ where
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 404, description = "Also when the compass has no model yet", body = Problem),
-              (status = 409, description = "Also when the compass has no binnacle yet", body = Problem),
+              (status = 409, description = "Also when the compass has no binnacle yet, or its record was changed after the correctors were confirmed as found", body = Problem),
               (status = 422, description = "Also when the reading is refused", body = Problem)))]
 async fn read_berth(
     Shared(app): Shared<App>,
@@ -98,6 +98,7 @@ async fn read_berth(
     position_check::check_reading_age(&given, app.clock.now().into())?;
     let (vessel, compass) = (stored.summary.vessel_id, stored.summary.compass_id);
     let basis = Basis::load(&app, vessel, compass, &given).await?;
+    require_record_as_found(&stored.state(), &basis.binnacle)?;
     let implausible_position =
         position_check::check_position(&app, &stored.summary, &given).await?;
     let (checked, refusal) = match (check(&given, &basis)?, implausible_position) {
@@ -156,7 +157,7 @@ fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
                 present settings: a reading of the magnetometer after the steps is a second \
                 reading. To start over, put the correctors back, report this under \
                 corrector-settings, and read again; or cancel the order, which records their \
-                settings, and let headings at sea make a new model"
+                settings, and order the adjustment anew"
                 .to_owned(),
         ));
     }

@@ -177,6 +177,7 @@ impl Judged {
             StepCheck::OtherStrength {
                 share,
                 other_hole,
+                or_found_otherwise,
                 binnacle,
                 setting,
                 outcome,
@@ -185,7 +186,10 @@ impl Judged {
                 setting: Some(setting),
                 binnacle: Some(*binnacle),
                 outcome: Some(outcome),
-                ..judged(StepVerdict::OtherStrength, strength_text(share, other_hole))
+                ..judged(
+                    StepVerdict::OtherStrength,
+                    strength_text(share, other_hole, or_found_otherwise),
+                )
             },
             StepCheck::Unexplained {
                 off_deg, unmoved, ..
@@ -211,15 +215,20 @@ fn unexplained_text(step: &Step, off_deg: f64, unmoved: bool) -> String {
     )
 }
 
-fn strength_text(share: f64, other_hole: Option<u16>) -> String {
+fn strength_text(share: f64, other_hole: Option<u16>, or_found_otherwise: bool) -> String {
     let words = format!("the corrector is {share:.2} times as strong as assumed");
-    match other_hole {
+    let mut words = match other_hole {
         Some(hole) => format!(
             "{words}, or stands at hole {hole}: count again; if it does, report the settings, or \
                 correct it and report that with the new compass reading"
         ),
         None => words,
+    };
+    if or_found_otherwise {
+        words += "; or before this step the magnets stood with the other end than recorded: look \
+            at the photographs as found, and read the field again after the last step";
     }
+    words
 }
 
 /// Recalculates a strength that this report disputes.
@@ -252,8 +261,19 @@ fn disputed(
     let Some(strength) = report.disputed_strength(&state).cloned() else {
         return Ok(None);
     };
+    if strength.verdict == StepVerdict::FoundOtherwise && report.compass_deg.is_none() {
+        // The turn at the step still speaks against the record.
+        return Ok(None);
+    }
     let mut plan_request = state.plan_request()?;
-    plan_request.binnacle = strength.binnacle.clone();
+    plan_request.binnacle = if strength.verdict == StepVerdict::FoundOtherwise {
+        strength.binnacle.clone()
+    } else {
+        // What a later step showed of the record holds.
+        let as_read = plan_request.binnacle.setting.clone();
+        let before = strength.binnacle.with_setting(as_read);
+        before.map_err(binnacle_fleet::binnacles::invalid_binnacle)?
+    };
     Ok(Some((Box::new(plan_request), Box::new(strength))))
 }
 

@@ -14,6 +14,7 @@ use crate::work_orders::payload::signed_record::Completion;
 use crate::work_orders::store;
 use binnacle_adjustment::adjust::UpdatedPrediction;
 use binnacle_adjustment::binnacle::Setting;
+use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::model::Model;
 use binnacle_fleet::binnacles;
 use binnacle_fleet::event_kinds;
@@ -46,6 +47,13 @@ pub(crate) fn require_planned_setting(state: &OrderState) -> Result<&Setting> {
         return wrong(format!(
             "step {number} is not done: do it, or plan from the present settings"
         ));
+    }
+    if state.has_unexplained_step {
+        return wrong(
+            "nothing explains the compass after the last step: report how the correctors stand, \
+                under corrector-settings"
+                .to_owned(),
+        );
     }
     Ok(&plan.plan.setting)
 }
@@ -95,13 +103,14 @@ pub(crate) async fn complete(
     let predicted = PredictedModel {
         id: completed.model_id,
         at,
+        begun_by: LogbookKind::Adjustment,
         input_hash: completed.record_sha256.clone(),
         model: completed.model_after.clone(),
     };
     write_model(change, &state, predicted).await?;
     write_binnacle(change, &after, "adjusted").await?;
-    let port = change.stored.summary.port.clone();
-    write_logbook(change, completed.logbook_entry, at, &port).await?;
+    let entry = completed.logbook_entry;
+    write_logbook(change, LogbookKind::Adjustment, entry, at).await?;
     let summary = change.stored.summary.clone();
     store::store_completion(&mut change.tx, &summary, at, change.now, &record).await?;
     change
@@ -116,6 +125,8 @@ pub(crate) struct PredictedModel {
     pub(crate) id: ModelId,
     /// Time from which it holds.
     pub(crate) at: Time,
+    /// Kind of the logbook's entry that begins its epoch.
+    pub(crate) begun_by: LogbookKind,
     /// SHA-256 of everything that it was made from.
     pub(crate) input_hash: String,
     /// The model.
@@ -135,6 +146,7 @@ pub(crate) async fn write_model(
     let Some((read, basis)) = read.and_then(|read| Some((read, read.basis.as_ref()?))) else {
         return Err(Error::WrongState("there is no plan".to_owned()));
     };
+    let begun_by = serde_json::to_value(predicted.begun_by)?;
     let model = StoredModel {
         vessel_id: change.stored.summary.vessel_id,
         id: predicted.id,
@@ -145,7 +157,7 @@ pub(crate) async fn write_model(
         estimator: PREDICTED_BY_PLAN.to_owned(),
         epoch_from: Some(predicted.at),
         epoch_to: None,
-        epoch_begun_by: Some("adjustment".to_owned()),
+        epoch_begun_by: begun_by.as_str().map(str::to_owned),
         data_from: Time(read.given.at),
         data_until: predicted.at,
         place_at: predicted.at,
@@ -187,25 +199,26 @@ pub(crate) async fn write_binnacle(
     .await
 }
 
-/// Writes the adjustment into the vessel's logbook, and requests a new analysis.
+/// Writes the order's work on the compass into the vessel's logbook, and requests a new analysis.
 pub(crate) async fn write_logbook(
     change: &mut Change<'_>,
+    kind: LogbookKind,
     id: EntryId,
     at: Time,
-    port: &str,
 ) -> Result<()> {
     let summary = &change.stored.summary;
     let note = format!("work order {}", summary.id);
-    let written = logbook::AdjustmentEntry {
+    let written = logbook::CompassWork {
+        kind,
         id,
         vessel: summary.vessel_id,
         compass: summary.compass_id,
         at,
-        port,
+        port: &summary.port,
         note: &note,
         author_id: change.author.id.unwrap_or_default(),
         author_name: &change.author.name,
         now: change.now,
     };
-    logbook::write_adjustment(&mut change.tx, &written).await
+    logbook::write_compass_work(&mut change.tx, &written).await
 }

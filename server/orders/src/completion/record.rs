@@ -44,6 +44,7 @@ pub(crate) fn make_record(
     let second_readings: Vec<_> = stored.log.iter().filter_map(second_reading).collect();
     let hidden = state.unconfirmed_steps();
     let found: Vec<_> = stored.log.iter().filter_map(settings).collect();
+    let as_found: Vec<_> = stored.log.iter().filter_map(as_found).collect();
     let steps: Vec<_> = stored.log.iter().filter_map(step).collect();
     let photos: Vec<_> = stored.log.iter().filter_map(photo).collect();
     canonical(&json!({
@@ -100,6 +101,7 @@ pub(crate) fn make_record(
             },
             "optimality": plan.optimality, "offered": plan.offered, "notes": plan.notes,
         })),
+        "as_found": as_found,
         "steps_as_read": steps,
         "settings_as_said": found,
         "second_readings": second_readings,
@@ -119,6 +121,16 @@ pub(crate) fn make_record(
 const NOT_SHOWN: &str = "the compass does not show these steps on the berth's heading, and no \
     second reading of the magnetometer confirms them: a slip in one of them can only be found \
     by headings at sea";
+
+fn as_found(entry: &Entry) -> Option<serde_json::Value> {
+    let OrderEvent::AsFound(found) = &entry.content else {
+        return None;
+    };
+    Some(json!({
+        "at": at(entry.at), "setting": found.setting, "dockside": found.dockside,
+        "difference": found.difference, "photos": found.photos,
+    }))
+}
 
 fn second_reading(entry: &Entry) -> Option<serde_json::Value> {
     let OrderEvent::SecondReading(read) = &entry.content else {

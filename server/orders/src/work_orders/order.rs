@@ -46,6 +46,8 @@ pub(crate) struct Order {
     /// before.
     #[schema(required)]
     pub as_found: Option<AsFound>,
+    /// Defects by the checks alongside, to be repaired before anything is planned.
+    pub defects: Vec<String>,
     /// Last accepted reading of the magnetometer.
     #[schema(required)]
     pub reading: Option<ReadingForm>,
@@ -138,6 +140,10 @@ impl Order {
             fee_eur: state.offers.holder().and_then(Offer::fee),
             call_change: state.call_change,
             limits: state.limits,
+            defects: state
+                .as_found
+                .as_ref()
+                .map_or_else(Vec::new, |found| found.dockside.defects()),
             as_found: state.as_found,
             next_step,
             setting,

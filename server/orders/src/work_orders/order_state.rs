@@ -15,7 +15,7 @@ use crate::work_orders::payload::recorded_second_reading::{
 };
 use crate::work_orders::payload::sea_verification::SeaVerification;
 use crate::work_orders::payload::signed_record::{Completion, RecordedSignature};
-use crate::work_orders::payload::step_result::StepResult;
+use crate::work_orders::payload::step_result::{StepResult, StepVerdict};
 use crate::work_orders::state::State;
 use binnacle_adjustment::adjust::{
     CompletedStep, Corrector, Limits, PredictedTable, Step, UpdatedPrediction,
@@ -43,7 +43,7 @@ pub(crate) struct OrderState {
     pub reading: Option<RecordedReading>,
     /// Binnacle with the strengths found so far, its correctors set as at the reading.
     pub binnacle: Option<Binnacle>,
-    /// Strengths inferred from steps, in order.
+    /// Strengths and wrong ends inferred from steps, in order.
     pub inferred_strengths: Vec<InferredStrength>,
     /// Setting of the correctors, if they were moved since the reading.
     pub moved_to: Option<Setting>,
@@ -53,6 +53,9 @@ pub(crate) struct OrderState {
     pub steps_done: usize,
     /// Result of the last step.
     pub last_step: Option<StepResult>,
+    /// True if nothing explained the compass after the last step, and nobody has reported the
+    /// correctors since: they may stand anywhere.
+    pub has_unexplained_step: bool,
     /// Steps done since the last reading, with the turns of the compass.
     pub steps: Vec<CompletedStep>,
     /// Heeling magnets moved before a second reading without a vertical part, which became
@@ -83,9 +86,12 @@ pub(crate) struct OrderState {
     pub signatures: Vec<RecordedSignature>,
 }
 
-/// Strength of a corrector, inferred from the turn of the compass at a step.
+/// Strength of a corrector, or a wrong end in the record, inferred from the turn of the compass at a
+/// step.
 #[derive(Clone, Debug)]
 pub(crate) struct InferredStrength {
+    /// Verdict on the step.
+    pub verdict: StepVerdict,
     /// The step, with the assumed position of its corrector.
     pub step: Step,
     /// Reading of the compass before it, degrees.
@@ -128,6 +134,7 @@ impl OrderState {
         self.plan = None;
         self.steps_done = 0;
         self.last_step = None;
+        self.has_unexplained_step = false;
         self.steps.clear();
         self.inspected_steps = 0;
         self.second_reading = None;
@@ -135,6 +142,27 @@ impl OrderState {
         self.reading = Some(read.clone());
         self.state = State::Measured;
         true
+    }
+
+    /// Drops the reading to plan from, which was judged by correctors that do not stand so, with
+    /// everything that followed it.
+    pub(crate) fn drop_reading(&mut self) {
+        let is_of_firm = self.offers.holder().is_some();
+        *self = OrderState {
+            state: if is_of_firm {
+                State::OnBoard
+            } else {
+                State::Planned
+            },
+            offers: std::mem::take(&mut self.offers),
+            hours: self.hours.take(),
+            call_change: self.call_change.take(),
+            port: self.port.take(),
+            limits: self.limits,
+            as_found: self.as_found.take(),
+            photos: std::mem::take(&mut self.photos),
+            ..OrderState::default()
+        };
     }
 
     /// Restores the state before the second reading became the one to plan from, if nothing
@@ -212,9 +240,9 @@ impl OrderState {
         self.moved_to.as_ref().or(as_read)
     }
 
-    /// Returns whether a corrector was moved.
+    /// Returns whether a corrector was moved, or may have been.
     pub(crate) fn has_moved_correctors(&self) -> bool {
-        if self.first_reading.is_some() {
+        if self.first_reading.is_some() || self.has_unexplained_step {
             return true;
         }
         let as_read = self.binnacle.as_ref().map(|binnacle| &binnacle.setting);

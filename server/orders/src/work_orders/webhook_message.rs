@@ -11,6 +11,7 @@ use crate::work_orders::summary::Summary;
 use binnacle_platform::ids::{DeliveryId, FirmId, OrderId, VesselId};
 use binnacle_platform::outbox::{Kind, Message};
 use binnacle_platform::time::Time;
+use binnacle_platform::webhooks::Words;
 use serde::Serialize;
 use serde_json::json;
 use utoipa::ToSchema;
@@ -24,6 +25,8 @@ pub struct WorkOrderMessage<'a> {
     kind: Kind,
     /// Time of the event.
     at: Time,
+    /// The message in words.
+    words: Words,
     /// The order at that moment, in short.
     work_order: MessageOrder<'a>,
     /// Entry of the order's log.
@@ -146,6 +149,23 @@ impl<'a> MessageEntry<'a> {
     }
 }
 
+/// Returns an order and its entry in words.
+fn words(order: &Summary, entry: &MessageEntry<'_>) -> Words {
+    let event = entry.kind.as_str().unwrap_or_default().replace('_', " ");
+    let planned = order.planned_at_local.as_deref();
+    let planned = planned.map_or(order.planned_at.to_the_minute(), str::to_owned);
+    let place = [Some(order.port.as_str()), order.berth.as_deref()];
+    let said = [entry.by, entry.text].into_iter().flatten();
+    let parts = [order.compass_name.as_str()].into_iter();
+    let parts = parts.chain(place.into_iter().flatten());
+    let parts: Vec<&str> = parts.chain([planned.as_str()]).chain(said).collect();
+    Words {
+        headline: format!("{}: work order, {event}", order.vessel_name),
+        text: parts.join(" · "),
+        path: format!("/work-orders/{}", order.id),
+    }
+}
+
 /// An order and one of its entries.
 pub(crate) struct OrderAndEntry<'a> {
     order: &'a Summary,
@@ -160,6 +180,7 @@ impl OrderAndEntry<'_> {
             id: DeliveryId::new(),
             kind,
             at,
+            words: words(order, &self.entry),
             work_order: MessageOrder {
                 id: order.id,
                 state: order.state,

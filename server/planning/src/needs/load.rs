@@ -18,7 +18,7 @@ use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, OperatorId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use uuid::Uuid;
 
 /// Vessel and compass: the key of what is stored of a compass.
@@ -177,33 +177,12 @@ async fn load_particulars(db: &Db, which: Which) -> Result<BTreeMap<VesselId, Pa
     found.into_iter().map(read).collect()
 }
 
-/// Returns the work in the logbooks, without adjustments of cancelled orders.
+/// Returns the work in the logbooks.
 async fn load_work(db: &Db, which: Which) -> Result<BTreeMap<VesselId, Vec<Work>>> {
-    let cancelled: BTreeSet<String> = rows!(
-        db,
-        (OrderId,),
-        "SELECT o.id FROM work_orders o JOIN vessels v ON v.id = o.vessel_id
-         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
-           AND o.completed_at IS NULL
-         ORDER BY o.id",
-        which.operator,
-        which.first,
-        which.last
-    )?
-    .into_iter()
-    .map(|(order,)| format!("work order {order}"))
-    .collect();
     let found = rows!(
         db,
-        (
-            VesselId,
-            Option<CompassId>,
-            String,
-            Time,
-            Option<Time>,
-            String
-        ),
-        "SELECT e.vessel_id, e.compass_id, e.kind, e.from_at, e.to_at, e.note
+        (VesselId, Option<CompassId>, String, Time, Option<Time>),
+        "SELECT e.vessel_id, e.compass_id, e.kind, e.from_at, e.to_at
          FROM logbook_entries e JOIN vessels v ON v.id = e.vessel_id
          WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
            AND e.withdrawn_at IS NULL
@@ -214,11 +193,8 @@ async fn load_work(db: &Db, which: Which) -> Result<BTreeMap<VesselId, Vec<Work>
         which.last
     )?;
     let mut work: BTreeMap<VesselId, Vec<Work>> = BTreeMap::new();
-    for (vessel, compass_id, kind, from, to, note) in found {
+    for (vessel, compass_id, kind, from, to) in found {
         let kind: LogbookKind = serde_json::from_value(Value::String(kind))?;
-        if kind == LogbookKind::Adjustment && cancelled.contains(&note) {
-            continue;
-        }
         work.entry(vessel).or_default().push(Work {
             compass_id,
             kind,

@@ -102,7 +102,7 @@ impl RequestContext {
     /// Returns the tenant of the actor, if both are known.
     pub fn tenant(&self) -> Option<Tenant> {
         let facts = self.trail.facts();
-        facts.actor.as_ref().and_then(|actor| actor.tenant())
+        facts.actor.as_ref().and_then(Actor::tenant)
     }
 
     /// Returns the context of what a request starts and does not wait for. It has a line of its own,

@@ -43,7 +43,9 @@ pub async fn notify_of_many(app: &App) -> Result<usize> {
         match notify(app, operator, refusals, now).await {
             Ok(true) => notified += 1,
             Ok(false) => {}
-            Err(error) => error!(?error, %operator, "admins cannot be told of refused sign-ins"),
+            Err(error) => {
+                error!(?error, %operator, "admins cannot be notified of refused sign-ins");
+            }
         }
     }
     Ok(notified)

@@ -4,7 +4,7 @@
 //! Its user sets a password and gets no other access; the sign-in follows with the password.
 
 use super::codes;
-use super::letters::Letter;
+use super::letter::Letter;
 use crate::access::AdminWriter;
 use crate::app::App;
 use crate::audit::{Actor, Refusal, RequestContext};

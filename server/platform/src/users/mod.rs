@@ -6,11 +6,10 @@
 
 mod codes;
 mod invitation;
-mod letters;
+mod letter;
 mod store;
 
 pub use invitation::{AccessEnded, Invitation, reset};
-pub use letters::Letters;
 
 use crate::access::{AdminReader, AdminWriter};
 use crate::app::App;

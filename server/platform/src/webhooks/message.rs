@@ -1,5 +1,6 @@
 //! Message of the test button.
 
+use super::format::Words;
 use super::kinds::{Audience, DeclaredKind};
 use crate::error::Result;
 use crate::ids::DeliveryId;
@@ -24,6 +25,8 @@ pub struct TestMessage {
     pub kind: Kind,
     /// Time of the event.
     pub at: Time,
+    /// The message in words.
+    pub words: Words,
 }
 
 impl TestMessage {
@@ -33,6 +36,11 @@ impl TestMessage {
             id: DeliveryId::new(),
             kind: Kind::TEST,
             at,
+            words: Words {
+                headline: "Test".to_owned(),
+                text: "A test message of Binnacle: this webhook works.".to_owned(),
+                path: "/webhooks".to_owned(),
+            },
         }
     }
 

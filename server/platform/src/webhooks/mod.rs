@@ -8,6 +8,7 @@
 //!   configured to allow it.
 
 mod announce;
+mod format;
 mod kinds;
 mod message;
 mod send;
@@ -15,6 +16,7 @@ mod store;
 mod webhook;
 
 pub use announce::announce;
+pub use format::Words;
 pub use kinds::{Audience, DeclaredKind, MessageKinds};
 pub use message::{TEST, TestMessage};
 pub use send::{SIGNATURE_HEADER, Sender};

@@ -59,10 +59,11 @@ impl Carrier for Sender {
 
     async fn carry(&self, app: &App, claimed: &Claimed) -> anyhow::Result<Attempt> {
         let found = store::address(&app.db, claimed.receiver_id).await?;
-        let (url, secret) = found.context("the webhook was removed")?;
+        let to = found.context("the webhook was removed")?;
         let seconds = app.clock.now().micros() / 1_000_000;
-        let body = claimed.body.clone();
-        Ok(match self.send(&url, &secret, seconds, body).await? {
+        let public_url = app.config.mail.public_url.as_deref();
+        let body = to.format.body(&claimed.body, public_url)?;
+        Ok(match self.send(&to.url, &to.secret, seconds, body).await? {
             status @ 200..=299 => Attempt::Accepted(status),
             // The receiver may still be repaired, so no failure is permanent.
             status => Attempt::Deferred(status, format!("responded with status {status}")),

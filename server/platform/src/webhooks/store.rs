@@ -1,5 +1,6 @@
 //! Webhooks in the database.
 
+use super::format::Format;
 use super::webhook::{Kinds, NewWebhook, Webhook};
 use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use crate::error::{Error, Result};
@@ -21,7 +22,7 @@ pub(super) async fn list(
     rows!(
         db,
         Webhook,
-        "SELECT w.id, w.url, w.kinds, r.enabled, w.created_at,
+        "SELECT w.id, w.url, w.kinds, r.enabled, w.format, w.created_at,
                 (SELECT COUNT(*) FROM deliveries d
                  WHERE d.receiver_id = w.id AND d.state = 'pending') AS pending,
                 (SELECT COUNT(*) FROM deliveries d
@@ -46,7 +47,7 @@ pub(super) async fn must_find(db: &Db, tenant: Tenant, id: WebhookId) -> Result<
     row!(
         db,
         Webhook,
-        "SELECT w.id, w.url, w.kinds, r.enabled, w.created_at,
+        "SELECT w.id, w.url, w.kinds, r.enabled, w.format, w.created_at,
                 (SELECT COUNT(*) FROM deliveries d
                  WHERE d.receiver_id = w.id AND d.state = 'pending') AS pending,
                 (SELECT COUNT(*) FROM deliveries d
@@ -74,8 +75,9 @@ pub(super) async fn insert(
     let (secret, sealed_by) = sealed(tx.seals(), id.0, secret);
     execute!(
         tx,
-        "INSERT INTO webhooks (id, operator_id, firm_id, url, secret, sealed_by, kinds, created_at)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
+        "INSERT INTO webhooks (id, operator_id, firm_id, url, secret, sealed_by, kinds, created_at,
+                               format)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)",
         id,
         tenant.operator(),
         tenant.firm(),
@@ -83,7 +85,8 @@ pub(super) async fn insert(
         secret,
         sealed_by,
         serde_json::to_string(&new.kinds)?,
-        now
+        now,
+        new.format
     )?;
     Ok(())
 }
@@ -166,13 +169,14 @@ pub(super) async fn change(
     outbox::enable(tx, tenant, id.0, wanted.enabled).await?;
     let changed = execute!(
         tx,
-        "UPDATE webhooks SET url = $4, kinds = $5
+        "UPDATE webhooks SET url = $4, kinds = $5, format = $6
          WHERE (operator_id = $1 OR firm_id = $2) AND id = $3",
         tenant.operator(),
         tenant.firm(),
         id,
         wanted.url.as_str(),
-        serde_json::to_string(&wanted.kinds)?
+        serde_json::to_string(&wanted.kinds)?,
+        wanted.format
     )?;
     if changed == 0 {
         return Err(Error::NotFound("webhook"));
@@ -180,17 +184,28 @@ pub(super) async fn change(
     Ok(())
 }
 
-/// Returns a webhook's URL and signing secret; none if it was removed.
-pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, String)>> {
+/// Where and how the messages of a webhook are sent.
+pub(super) struct Address {
+    pub(super) url: String,
+    pub(super) secret: String,
+    pub(super) format: Format,
+}
+
+/// Returns a webhook's address; none if it was removed.
+pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<Address>> {
     let found = row!(
         db,
-        (String, String, Option<String>),
-        "SELECT url, secret, sealed_by FROM webhooks WHERE id = $1 ORDER BY id",
+        (String, String, Option<String>, Format),
+        "SELECT url, secret, sealed_by, format FROM webhooks WHERE id = $1 ORDER BY id",
         id
     )?;
-    let opened = found.map(|(url, column, sealed_by)| {
+    let opened = found.map(|(url, column, sealed_by, format)| {
         let secret = opened(db.seals(), id, column, sealed_by)?;
-        Ok((url, secret))
+        Ok(Address {
+            url,
+            secret,
+            format,
+        })
     });
     opened.transpose()
 }

@@ -1,5 +1,6 @@
 //! Webhooks, as requested and as shown.
 
+use super::format::Format;
 use super::kinds::MessageKinds;
 use crate::error::{Error, Result};
 use crate::http::is_control;
@@ -44,6 +45,9 @@ pub(super) struct NewWebhook {
     /// True if messages are sent; true by default.
     #[serde(default = "enabled")]
     pub(super) enabled: bool,
+    /// Form of the messages; that for programs by default.
+    #[serde(default)]
+    pub(super) format: Format,
 }
 
 fn enabled() -> bool {
@@ -64,6 +68,8 @@ pub(super) struct Webhook {
     pub(super) kinds: Kinds,
     /// True if messages are sent; undelivered messages wait meanwhile.
     pub(super) enabled: bool,
+    /// Form of the messages.
+    pub(super) format: Format,
     /// Creation time.
     pub(super) created_at: Time,
     /// Number of pending deliveries.

@@ -1,6 +1,7 @@
-//! A step with an unexpected compass reading, and the magnet strength estimated from it.
+//! A step with an unexpected compass reading, and the magnet strength or the wrong record found by it.
 
 use binnacle_compass::model::Model;
+use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::work_orders::{Job, reading_on_ship, second_reading_after};
 use binnacle_server_testing::{TestServer, true_model};
@@ -9,6 +10,7 @@ use serde_json::{Value, json};
 on_both!(
     a_tray_in_a_wrong_hole_does_not_change_the_magnet_strength,
     a_corrected_tray_does_not_change_the_magnet_strength,
+    a_wrong_end_in_the_record_stays_corrected_after_another_report,
 );
 
 fn number(value: &Value) -> f64 {
@@ -129,5 +131,79 @@ async fn a_corrected_tray_does_not_change_the_magnet_strength(server: TestServer
         "setting": as_planned, "compass_deg": compass_deg.rem_euclid(360.0),
     });
     follow_new_plan(&job, &new_setting).await;
+    server.finish().await;
+}
+
+/// Returns the second reading with a setting of a ship whose correctors stood otherwise at the first.
+fn field_after(setting: &Value, stood: &Value) -> Value {
+    let first = reading_on_ship(&ship());
+    let [mut now, before] = [setting, stood].map(|set| second_reading_after(&first, set));
+    for part in ["forward", "starboard"] {
+        now[part] = json!(number(&now[part]) - number(&before[part]) + number(&first[part]));
+    }
+    now
+}
+
+async fn a_wrong_end_in_the_record_stays_corrected_after_another_report(server: TestServer) {
+    let person = server.admin("ada").await;
+    let job = Job::on_ship(&server, person, &ship()).await;
+    let tray = |red: &str| json!({ "athwartship": [{ "hole": 9, "magnet": "200 mm", "count": 2, "red": red }] });
+    let (stood, said) = (tray("port"), tray("starboard"));
+    let mut recorded = binnacle();
+    recorded["setting"]["athwartship"] = said["athwartship"].clone();
+    let path = format!("/compasses/{}/binnacle", job.compass);
+    put(&job.person, &job.ship.path(&path), &recorded)
+        .await
+        .good();
+    job.confirm_as_found().await;
+    job.post("/berth-reading", &reading_on_ship(&ship()))
+        .await
+        .good();
+    let mut order = job.post("/plan", &json!({})).await.good();
+    let step = loop {
+        let step = order["next_step"].clone();
+        assert!(
+            step.is_object(),
+            "no step moves the tray: {}",
+            order["plan"]["plan"]["steps"]
+        );
+        let path = format!("/steps/{}", step["number"]);
+        if step["corrector"] == "athwartship" && step["from"]["hole"] == 9 {
+            // Iron and other magnets stand already as planned.
+            let mut before = step["setting_before"].clone();
+            for other in before["athwartship"].as_array_mut().unwrap() {
+                if other["hole"] == 9 {
+                    other["red"] = json!("port");
+                }
+            }
+            let heading = |setting: &Value| {
+                let field = field_after(setting, &stood);
+                let [forward, starboard] =
+                    ["forward", "starboard"].map(|part| number(&field[part]));
+                (-starboard).atan2(forward).to_degrees()
+            };
+            let turned_deg = heading(&step["setting_after"]) - heading(&before);
+            let after_deg = (number(&order["compass_deg"]) + turned_deg).rem_euclid(360.0);
+            let read = json!({ "after_deg": after_deg });
+            order = job.post(&path, &read).await.good();
+            break step;
+        }
+        let after = json!({ "after_deg": step["expected_compass_deg"] });
+        order = job.post(&path, &after).await.good();
+    };
+    assert_eq!(
+        order["last_step"]["verdict"], "found_otherwise",
+        "{}",
+        order["last_step"]
+    );
+    // They take the magnets of the step out.
+    let mut setting = step["setting_after"].clone();
+    setting["athwartship"] = json!([]);
+    let report = json!({ "setting": setting, "note": "taken out" });
+    job.post("/corrector-settings", &report).await.good();
+    let field = field_after(&setting, &stood);
+    let order = job.post("/second-reading", &field).await.good();
+    let result = &order["second_reading"];
+    assert_eq!(result["verdict"], "replan", "{result}");
     server.finish().await;
 }

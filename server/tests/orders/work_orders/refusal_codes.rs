@@ -4,14 +4,15 @@ use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::work_orders::AT;
 use binnacle_server_testing::work_orders::{
-    HEADING_DEG, Job, completion_details, reading, second_reading,
+    HEADING_DEG, Job, LAMBDA, at_berth, completion_details, reading, second_reading,
 };
-use binnacle_server_testing::{Person, TestServer};
+use binnacle_server_testing::{Person, TestServer, true_model};
 use serde_json::{Value, json};
 
 on_both!(
     an_impossible_reading_is_refused_with_its_code,
     an_insufficient_plan_is_refused_with_its_code,
+    steel_on_the_quay_shows_on_another_heading,
     a_lambda_contradicting_the_last_adjustment_needs_a_logbook_entry,
     invalid_limits_are_refused,
     a_step_is_done_by_one_of_two_browsers,
@@ -102,6 +103,36 @@ async fn an_insufficient_plan_is_refused_with_its_code(server: TestServer) {
         assert_eq!(refused, word, "{limits}");
         assert_eq!(job.view_order().await["state"], "measured");
     }
+    server.finish().await;
+}
+
+/// The ship is shifted by 120 degrees, and lies there beside steel or not.
+async fn steel_on_the_quay_shows_on_another_heading(server: TestServer) {
+    let job = Job::begin(&server).await;
+    let (magnetic_deg, earth) = at_berth();
+    let other_rad = (magnetic_deg + 120.0).to_radians();
+    let parameters = true_model().parameters_over_lambda;
+    let there = parameters.field_over_lambda(other_rad, earth);
+    let [forward, starboard] = there.map(|part| LAMBDA * part / 1000.0);
+    let shifted = |steel: f64| {
+        reading_with(&json!({ "shifted": {
+            "heading_true_deg": HEADING_DEG + 120.0,
+            "forward": forward + steel, "starboard": starboard,
+        } }))
+    };
+    let near = reading_with(&json!({ "shifted": {
+        "heading_true_deg": HEADING_DEG + 10.0, "forward": forward, "starboard": starboard,
+    } }));
+    let refused = job.post("/berth-reading", &near).await;
+    assert_eq!(refused.problem(), "invalid");
+    assert!(refused.text.contains("shifted"), "{refused:?}");
+    job.post("/berth-reading", &shifted(5.0)).await.good();
+    let code = job.refusal_code("/plan", &json!({})).await;
+    assert_eq!(code, "foreign_field");
+    job.post("/berth-reading", &shifted(0.0)).await.good();
+    let order = job.post("/plan", &json!({})).await.good();
+    let notes = order["plan"]["notes"].to_string();
+    assert!(!notes.contains("steel on the quay"), "{notes}");
     server.finish().await;
 }
 

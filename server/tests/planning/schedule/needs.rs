@@ -374,7 +374,7 @@ async fn a_cancelled_order_does_not_count_as_an_adjustment(server: TestServer) {
     let order = ada.post("/work-orders", &order).await.good();
     let id = order["id"].as_str().unwrap();
     // The record as it is after moved correctors.
-    let left = json!({ "kind": "adjustment", "from": "2026-11-20T08:00:00Z",
+    let left = json!({ "kind": "corrector_change", "from": "2026-11-20T08:00:00Z",
                        "note": format!("work order {id}") });
     ada.post(&path(&nao, "/logbook"), &left).await.good();
     let cancel = json!({ "text": "no time" });

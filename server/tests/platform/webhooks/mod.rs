@@ -17,6 +17,7 @@ use serde_json::{Value, json};
 
 on_both!(
     an_alert_is_delivered_with_a_signature,
+    a_chat_gets_an_alert_in_words,
     unsubscribed_events_are_not_sent,
     messages_are_delivered_in_order_after_the_previous_one,
     a_receiver_down_for_a_day_leaves_a_dead_letter_that_can_be_resent,
@@ -80,6 +81,37 @@ async fn an_alert_is_delivered_with_a_signature(server: TestServer) {
         (&json!(1), &json!(200))
     );
     assert_eq!(delivery["body"], message);
+    server.finish().await;
+}
+
+async fn a_chat_gets_an_alert_in_words(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let (receiver, url) = Receiver::start().await;
+    let new = json!({ "url": url, "kinds": ["alert.raised"], "format": "slack" });
+    let webhook = ada.post("/webhooks", &new).await.good();
+    assert_eq!(webhook["format"], "slack");
+    let ada = raise_alert(&server, &ada).await;
+    assert_eq!(deliver(&server).await, [Sent::Delivered]);
+    let (_, body) = receiver.received().remove(0);
+    let alert = ada.get("/alerts").await.good()["items"][0].clone();
+    let expected = format!(
+        "*Nao: {}, {}*\n{}\n<https://binnacle.example/alerts#{}|Open in Binnacle>",
+        alert["severity"].as_str().unwrap(),
+        "no data from the vessel",
+        alert["summary"].as_str().unwrap(),
+        alert["id"].as_str().unwrap(),
+    );
+    assert_eq!(json_of(&body), json!({ "text": expected }));
+
+    let changed = json!({ "url": url, "kinds": ["alert.raised"], "format": "teams" });
+    let request = ada.request(Method::PUT, &path(&webhook, "")).json(&changed);
+    assert_eq!(ApiResponse::send(request).await.good()["format"], "teams");
+    ada.post(&path(&webhook, "/test"), &json!({})).await.good();
+    assert_eq!(deliver(&server).await, [Sent::Delivered]);
+    let (_, body) = receiver.received().remove(1);
+    assert_eq!(json_of(&body)["type"], "message");
+    let unknown = json!({ "url": url, "kinds": ["alert.raised"], "format": "irc" });
+    assert_eq!(ada.post("/webhooks", &unknown).await.problem(), "invalid");
     server.finish().await;
 }
 

@@ -8,7 +8,7 @@
 
 use super::innovation::{FieldVector, Innovation, MODEL_SIZE, ModelVector, Perturbation};
 use super::result::{CompletedStep, Slip};
-use crate::adjust::as_found::FoundOtherwise;
+use crate::adjust::as_found::{FOUND_OTHERWISE, FoundOtherwise};
 use crate::adjust::inputs::Adjustment;
 use crate::adjust::instructions::{
     Corrector, Place, compass_turn, moved, replaced, reversed, stands,
@@ -26,13 +26,10 @@ const WRONG_END: f64 = 0.01;
 const HOLES_OFF: [f64; 3] = [0.004, 0.002, 0.002];
 /// Prior probability of a step that was not done.
 const NOT_DONE: f64 = 0.004;
-/// Prior probability of magnets that stood with the other end than recorded, after someone
-/// confirmed the record.
-const FOUND_OTHERWISE: f64 = 0.002;
 /// Prior probability of another moment of all magnets of a kind.
-const OTHER_MOMENT: f64 = 0.2;
+pub(crate) const OTHER_MOMENT: f64 = 0.2;
 /// Standard deviation of that moment, as a share of it.
-const MOMENT_SD: f64 = 0.2;
+pub(crate) const MOMENT_SD: f64 = 0.2;
 /// Prior probability of another field.
 const OTHER_FIELD: f64 = 0.01;
 /// Standard deviation of that field along each axis, nT.

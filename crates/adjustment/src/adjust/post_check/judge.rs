@@ -55,20 +55,12 @@ impl Judge<'_> {
         let fits = posterior.iter().any(|one| {
             one.kind != HypothesisKind::OtherField && one.squared <= chi_squared_limit(innovation)
         });
-        let share_of = |wanted: fn(&HypothesisKind) -> bool| {
-            let those = posterior.iter().filter(|one| wanted(&one.kind));
-            those.map(|one| one.share).sum::<f64>()
-        };
-        if !fits || share_of(|kind| *kind == HypothesisKind::OtherField) > LIKELY {
+        if !fits || share_of(posterior, |kind| *kind == HypothesisKind::OtherField) > LIKELY {
             return Ok(Verdict::Unexplained {
                 misreadings: self.misreadings(),
             });
         }
-        let of_steps = share_of(|kind| kind.step().is_some());
-        let likeliest = posterior.iter().max_by(|a, b| a.share.total_cmp(&b.share));
-        // Magnets that stood otherwise before stand right now: the reading updates the model.
-        let is_slip = likeliest.is_some_and(|one| matches!(one.kind, HypothesisKind::Step(..)));
-        if of_steps > LIKELY && is_slip {
+        if is_slip(posterior) {
             return self.slip(posterior);
         }
         let updated = update_prediction(self.adjustment, self.known, posterior)?;
@@ -201,6 +193,21 @@ impl Judge<'_> {
             innovation.difference().dot(&solved) <= chi_squared_limit(&innovation)
         })
     }
+}
+
+/// Returns the probability of hypotheses of a kind together.
+fn share_of(posterior: &[Posterior], wanted: fn(&HypothesisKind) -> bool) -> f64 {
+    let those = posterior.iter().filter(|one| wanted(&one.kind));
+    those.map(|one| one.share).sum()
+}
+
+/// Returns whether a corrector is probably not as believed, and rather by a slip of the hand than
+/// since before: magnets that stood otherwise before stand right now, and the reading updates the
+/// model.
+pub(crate) fn is_slip(posterior: &[Posterior]) -> bool {
+    let slips = share_of(posterior, |kind| matches!(kind, HypothesisKind::Step(..)));
+    let found = share_of(posterior, |kind| matches!(kind, HypothesisKind::AsFound(_)));
+    slips + found > LIKELY && slips >= found
 }
 
 fn chi_squared_limit(innovation: &Innovation) -> f64 {

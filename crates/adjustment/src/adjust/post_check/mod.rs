@@ -20,6 +20,7 @@ pub use result::{CompletedStep, FieldComponent, PostCheck, Slip, UpdatedPredicti
 use super::inputs::{self, AdjustError, Adjustment, Unit, VerticalReading};
 use super::state::MagneticState;
 use crate::berth::BerthReading;
+pub(crate) use hypotheses::{MOMENT_SD, OTHER_MOMENT};
 use hypotheses::{weigh_by_compass, weigh_hypotheses};
 use innovation::Innovation;
 use judge::Judge;

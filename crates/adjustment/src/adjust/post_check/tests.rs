@@ -3,10 +3,12 @@
 use super::super::state::{MagneticState, setting_errors};
 use super::super::tests::{BISCAY, Case, bare, sum};
 use super::super::*;
+use super::hypotheses::{HypothesisKind, Posterior};
 use super::innovation::ModelVector;
+use super::judge::is_slip;
 use crate::berth::BerthReading;
 use crate::binnacle::tests::class_a;
-use crate::binnacle::{Binnacle, Setting};
+use crate::binnacle::{Axis, Binnacle, Setting};
 use crate::corrector::effect;
 use binnacle_compass::ship::ShipMagnetism;
 use nalgebra::SMatrix;
@@ -164,8 +166,8 @@ fn magnets_with_the_wrong_end_are_named_whatever_the_heading() {
             };
             let mut truly = adjusted.plan.setting.clone();
             let axis = match step.corrector {
-                Corrector::ForeAndAft => crate::binnacle::Axis::ForeAndAft,
-                _ => crate::binnacle::Axis::Athwartship,
+                Corrector::ForeAndAft => Axis::ForeAndAft,
+                _ => Axis::Athwartship,
             };
             let trays = truly.trays_mut(axis).iter_mut();
             trays
@@ -395,4 +397,86 @@ fn the_second_reading_in_the_documentation_reads() {
     let mut wild = after;
     wild.turned_deg = vec![None, Some(f64::NAN)];
     assert_eq!(berth.parse_after(&wild).unwrap_err().field, "turned_deg[1]");
+}
+
+/// Holes share a probability that none of them has alone.
+#[test]
+fn a_slip_is_named_by_the_probability_of_all_its_holes() {
+    let posterior = |shares: &[(HypothesisKind, f64)]| -> Vec<Posterior> {
+        let one = |(kind, share): &(HypothesisKind, f64)| Posterior {
+            kind: kind.clone(),
+            share: *share,
+            correction: ModelVector::zeros(),
+            covariance: SMatrix::zeros(),
+            squared: 0.0,
+        };
+        shares.iter().map(one).collect()
+    };
+    let hole = |hole| HypothesisKind::Step(1, Slip::OtherHole { hole }, Setting::default());
+    let planned = HypothesisKind::AsPlanned;
+    let shared = [
+        (planned.clone(), 0.35),
+        (hole(3), 0.2),
+        (hole(4), 0.2),
+        (hole(5), 0.15),
+    ];
+    assert!(is_slip(&posterior(&shared)));
+    let stood = [
+        (planned.clone(), 0.1),
+        (hole(3), 0.2),
+        (HypothesisKind::AsFound(1), 0.7),
+    ];
+    assert!(!is_slip(&posterior(&stood)));
+    assert!(!is_slip(&posterior(&[(planned, 0.6), (hole(3), 0.4)])));
+}
+
+/// The record has a red end the wrong way, on either axis: after the magnets have moved, the ship
+/// without correctors turns out to be another, with the right sign.
+#[test]
+fn magnets_recorded_with_the_wrong_end_move_the_model_towards_the_ship() {
+    for axis in [Axis::ForeAndAft, Axis::Athwartship] {
+        let case = Case::new(ship(), class_a(), 45.0);
+        let mut wrong = case.binnacle.setting.clone();
+        let tray = &mut wrong.trays_mut(axis)[0];
+        tray.red = tray.red.reversed();
+        let recorded = case.binnacle.with_setting(wrong).unwrap();
+        let mut out = recorded.setting.clone();
+        out.trays_mut(axis).clear();
+        let adjustment = Adjustment {
+            binnacle: &recorded,
+            now: Some(&out),
+            ..case.adjustment()
+        };
+        let state = MagneticState::new(&adjustment).unwrap();
+        let from_record = Adjustment {
+            now: None,
+            ..adjustment.clone()
+        };
+        let done: Vec<CompletedStep> = instructions::steps(&from_record, &state, &out)
+            .into_iter()
+            .map(|step| CompletedStep {
+                step,
+                turned_deg: None,
+            })
+            .collect();
+        let [x, y, _] = field(&ship(), &case.binnacle, &out, 45.0);
+        let first = &case.reading;
+        let read =
+            BerthReading::new(first.magnetic(), [x, y], first.errors(), first.alignment()).unwrap();
+        let again =
+            check_second_reading(&adjustment, &done, &read, None, None, Unit::Nanotesla).unwrap();
+        let (Verdict::AsPlanned { updated } | Verdict::Replan { updated, .. }) = again.verdict
+        else {
+            panic!("{axis:?}: {:?}", again.verdict)
+        };
+        let there = effect(&case.binnacle, &out).as_ship(BISCAY.h_nt);
+        let truly = sum(&ship(), &there).parameters_over_lambda().unwrap();
+        let believed = state.model_with(&out).unwrap();
+        let off = |model: &binnacle_compass::model::Model| {
+            let parameters = model.parameters_over_lambda;
+            (parameters.bx_nt - truly.bx_nt).hypot(parameters.by_nt - truly.by_nt)
+        };
+        let [before, after] = [&believed, &updated.model_after].map(off);
+        assert!(before > 1_000.0 && after < 0.2 * before, "{before} {after}");
+    }
 }

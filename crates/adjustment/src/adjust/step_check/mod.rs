@@ -5,15 +5,16 @@ mod result;
 
 pub use result::{ProvenEffect, StepCheck, TotalTurn};
 
-use super::as_found::FoundOtherwise;
+use super::as_found::{FoundOtherwise, log_density};
 use super::inputs::{AdjustError, Adjustment};
 use super::instructions::{Place, Step, compass_turn, elsewhere, moved, replaced, tolerance_deg};
 use super::planning::plan;
+use super::post_check::{MOMENT_SD, OTHER_MOMENT};
 use super::state::MagneticState;
 use crate::binnacle::{Axis, Binnacle, Setting};
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::NORMAL_99;
-use corrector_scale::find_scale;
+use corrector_scale::{CorrectorScale, find_scale};
 
 /// Turn below which the card may not have moved, degrees.
 const UNMOVED_DEG: f64 = 0.5;
@@ -87,48 +88,97 @@ pub fn check_step(
             outcome,
         });
     }
-    let supposed = FoundOtherwise::suppose(adjustment, step).filter(|supposed| {
-        wrap_180(turned_deg - supposed.change_deg).abs() <= supposed.tolerance_deg
-    });
-    if let Some(supposed) = supposed {
-        let setting = step.setting_after.clone();
-        let outcome = Box::new(plan(&Adjustment {
-            binnacle: &supposed.binnacle,
-            now: Some(&setting),
-            compass_deg: Some(after_deg),
-            ..adjustment.clone()
-        })?);
-        return Ok(StepCheck::FoundOtherwise {
-            turned_deg,
-            binnacle: Box::new(supposed.binnacle),
-            setting,
-            outcome,
-        });
-    }
-    let Some(found) = find_scale(adjustment, step, turned_deg)? else {
+    let Some(cause) = find_cause(adjustment, step, turned_deg)? else {
         let unmoved = turned_deg.abs() <= UNMOVED_DEG;
         return Ok(StepCheck::Unexplained { off_deg, unmoved });
     };
     let setting = step.setting_after.clone();
     let outcome = Box::new(plan(&Adjustment {
-        binnacle: &found.binnacle,
+        binnacle: cause.binnacle(),
         now: Some(&setting),
         compass_deg: Some(after_deg),
         ..adjustment.clone()
     })?);
-    Ok(StepCheck::OtherStrength {
-        share: found.share,
-        share_sd: found.share_sd,
-        other_hole: other_hole(adjustment, &state, step, turned_deg),
-        binnacle: Box::new(found.binnacle),
-        setting,
-        outcome,
+    Ok(match cause {
+        Cause::Record(supposed) => StepCheck::FoundOtherwise {
+            turned_deg,
+            binnacle: Box::new(supposed.binnacle),
+            setting,
+            outcome,
+        },
+        Cause::Strength {
+            found,
+            or_record_wrong,
+        } => StepCheck::OtherStrength {
+            share: found.share,
+            share_sd: found.share_sd,
+            other_hole: other_hole(adjustment, &state, step, turned_deg),
+            or_found_otherwise: or_record_wrong,
+            binnacle: Box::new(found.binnacle),
+            setting,
+            outcome,
+        },
     })
 }
 
+/// Cause of another turn than expected, with the step as said.
+enum Cause {
+    /// The magnets stood with the other end than recorded.
+    Record(FoundOtherwise),
+    /// The corrector has another strength.
+    Strength {
+        found: CorrectorScale,
+        /// True if a wrong record would explain the turn too.
+        or_record_wrong: bool,
+    },
+}
+
+impl Cause {
+    fn binnacle(&self) -> &Binnacle {
+        match self {
+            Cause::Record(supposed) => &supposed.binnacle,
+            Cause::Strength { found, .. } => &found.binnacle,
+        }
+    }
+}
+
+/// Finds the likelier cause of the turn. Magnets that come from a deep hole turn the compass a
+/// little more if the record of their end is wrong, as stronger magnets do.
+fn find_cause(
+    adjustment: &Adjustment<'_>,
+    step: &Step,
+    turned_deg: f64,
+) -> Result<Option<Cause>, AdjustError> {
+    let supposed = FoundOtherwise::suppose(adjustment, step)
+        .filter(|supposed| supposed.off_deg(turned_deg).abs() <= supposed.tolerance_deg);
+    let found = find_scale(adjustment, step, turned_deg)?;
+    let found = match (&supposed, found) {
+        (Some(supposed), Some(_))
+            if supposed.log_weight(turned_deg) >= log_weight_of_strength(step, turned_deg) =>
+        {
+            None
+        }
+        (_, found) => found,
+    };
+    Ok(match (supposed, found) {
+        (supposed, Some(found)) => Some(Cause::Strength {
+            found,
+            or_record_wrong: supposed.is_some(),
+        }),
+        (supposed, None) => supposed.map(Cause::Record),
+    })
+}
+
+/// Logarithm of the prior probability of another moment times the density of the turn, per degree.
+fn log_weight_of_strength(step: &Step, turned_deg: f64) -> f64 {
+    let off_deg = wrap_180(turned_deg - step.change_deg);
+    let sd_deg = (step.tolerance_deg / NORMAL_99).hypot(MOMENT_SD * step.change_deg);
+    OTHER_MOMENT.ln() + log_density(off_deg, sd_deg)
+}
+
 /// Judges a step whose corrector turns out to be in the place of `setting`: returns the
-/// completed step, and the binnacle with the scale that the compass shows, if it was read
-/// since. `adjustment` is that before the step.
+/// completed step, and the binnacle with the strength or the record that the compass shows, if it
+/// was read since. `adjustment` is that before the step.
 ///
 /// # Errors
 /// Fails when the input of the adjustment is invalid.
@@ -161,11 +211,11 @@ pub fn check_step_with_setting(
     let otherwise =
         turned_deg.filter(|turned_deg| wrap_180(turned_deg - change_deg).abs() > tolerance_deg);
     let found = match otherwise {
-        Some(turned_deg) => find_scale(adjustment, &done, turned_deg)?,
+        Some(turned_deg) => find_cause(adjustment, &done, turned_deg)?,
         None => None,
     };
-    let binnacle = found.map_or_else(|| adjustment.binnacle.clone(), |found| found.binnacle);
-    Ok((done, binnacle))
+    let binnacle = found.as_ref().map_or(adjustment.binnacle, Cause::binnacle);
+    Ok((done, binnacle.clone()))
 }
 
 /// Finds a nearby hole in which unscaled magnets would explain the turn.

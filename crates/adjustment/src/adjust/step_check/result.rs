@@ -55,6 +55,8 @@ pub enum StepCheck {
         share_sd: f64,
         /// Nearby hole in which the assumed strength would have the same effect.
         other_hole: Option<u16>,
+        /// True if magnets that stood with the other end than recorded would have the same effect.
+        or_found_otherwise: bool,
         /// Binnacle with the found strength.
         binnacle: Box<Binnacle>,
         /// Actual setting.

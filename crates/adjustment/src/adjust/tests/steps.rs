@@ -328,46 +328,105 @@ fn heeling_magnets_are_verified_by_the_vertical_field() {
     assert!(moved >= 2, "{moved}");
 }
 
+/// A step from a record with the wrong end, and the turn of the compass by it.
+struct Misrecorded {
+    case: Case,
+    recorded: Binnacle,
+    step: Step,
+    turned_deg: f64,
+}
+
+impl Misrecorded {
+    /// Moves the magnets of an axis from a hole to another, or takes them out.
+    fn new(axis: Axis, from: u16, to: Option<u16>) -> Misrecorded {
+        let mut ship = bare();
+        ship.b_nt = [-2_500.0, 2_500.0, 0.0];
+        let mut stood = class_a().setting.clone();
+        stood.trays_mut(axis)[0].hole = from;
+        let case = Case::new(ship, class_a().with_setting(stood).unwrap(), 45.0);
+        let mut recorded = case.binnacle.setting.clone();
+        let tray = &mut recorded.trays_mut(axis)[0];
+        tray.red = tray.red.reversed();
+        let recorded = case.binnacle.with_setting(recorded).unwrap();
+        let adjustment = Adjustment {
+            binnacle: &recorded,
+            ..case.adjustment()
+        };
+        let state = MagneticState::new(&adjustment).unwrap();
+        let mut moved = recorded.setting.clone();
+        match to {
+            Some(hole) => moved.trays_mut(axis)[0].hole = hole,
+            None => moved.trays_mut(axis).clear(),
+        }
+        let step = instructions::steps(&adjustment, &state, &moved).remove(0);
+        assert_eq!(step.setting_after, moved);
+        let truth = case.adjustment();
+        let truly = MagneticState::new(&truth).unwrap();
+        let turn = instructions::compass_turn(&truth, &truly, &case.binnacle.setting, &moved);
+        Misrecorded {
+            turned_deg: turn.change_deg,
+            recorded,
+            step,
+            case,
+        }
+    }
+
+    fn check(&self) -> StepCheck {
+        let adjustment = Adjustment {
+            binnacle: &self.recorded,
+            ..self.case.adjustment()
+        };
+        let after_deg = binnacle_compass::angle::wrap_360(50.0 + self.turned_deg);
+        check_step(&adjustment, &self.step, 50.0, after_deg).unwrap()
+    }
+}
+
 /// The record has the red end the wrong way: the compass turns the other way when the magnets
-/// are taken out, and the plan is made for the ship as she is.
+/// are taken out, too far when they move, and the plan is made for the ship as she is.
 #[test]
 fn magnets_that_stood_otherwise_than_recorded_are_found_by_the_first_step() {
-    let mut ship = bare();
-    ship.b_nt = [-2_500.0, 2_500.0, 0.0];
-    let case = Case::new(ship, class_a(), 45.0);
-    let mut recorded = case.binnacle.setting.clone();
-    let tray = &mut recorded.athwartship[0];
-    tray.red = tray.red.reversed();
-    let recorded = case.binnacle.with_setting(recorded).unwrap();
-    let adjustment = Adjustment {
-        binnacle: &recorded,
-        ..case.adjustment()
-    };
-    let state = MagneticState::new(&adjustment).unwrap();
-    let mut out = recorded.setting.clone();
-    out.athwartship.clear();
-    let step = instructions::steps(&adjustment, &state, &out).remove(0);
-    let truth = case.adjustment();
-    let truly = MagneticState::new(&truth).unwrap();
-    let mut empty = case.binnacle.setting.clone();
-    empty.athwartship.clear();
-    let turn = instructions::compass_turn(&truth, &truly, &case.binnacle.setting, &empty);
-    let after_deg = binnacle_compass::angle::wrap_360(50.0 + turn.change_deg);
-    let found = check_step(&adjustment, &step, 50.0, after_deg).unwrap();
-    let StepCheck::FoundOtherwise {
-        binnacle, outcome, ..
+    let ways = [
+        (Axis::Athwartship, 7, None),
+        (Axis::ForeAndAft, 5, None),
+        (Axis::Athwartship, 7, Some(11)),
+        (Axis::ForeAndAft, 7, Some(11)),
+    ];
+    for (axis, from, to) in ways {
+        let misrecorded = Misrecorded::new(axis, from, to);
+        let case = &misrecorded.case;
+        let found = misrecorded.check();
+        let StepCheck::FoundOtherwise {
+            binnacle, outcome, ..
+        } = found
+        else {
+            panic!("{axis:?} {to:?}: {found:?}")
+        };
+        assert_eq!(binnacle.setting, case.binnacle.setting);
+        let with_truth = plan(&Adjustment {
+            now: Some(&misrecorded.step.setting_after),
+            compass_deg: Some(50.0 + misrecorded.turned_deg),
+            ..case.adjustment()
+        });
+        assert_eq!(
+            outcome.plans[0].setting,
+            with_truth.unwrap().plans[0].setting
+        );
+    }
+}
+
+/// Magnets from a deep hole turn the compass by a little more than expected where their end was
+/// recorded wrongly, which stronger magnets do oftener.
+#[test]
+fn a_small_surplus_is_strength_before_it_is_a_wrong_record() {
+    let misrecorded = Misrecorded::new(Axis::Athwartship, 1, Some(19));
+    let share = misrecorded.turned_deg / misrecorded.step.change_deg;
+    assert!((1.1..1.4).contains(&share), "{share}");
+    let found = misrecorded.check();
+    let StepCheck::OtherStrength {
+        or_found_otherwise, ..
     } = found
     else {
         panic!("{found:?}")
     };
-    assert_eq!(binnacle.setting, case.binnacle.setting);
-    let with_truth = plan(&Adjustment {
-        now: Some(&out),
-        compass_deg: Some(after_deg),
-        ..case.adjustment()
-    });
-    assert_eq!(
-        outcome.plans[0].setting,
-        with_truth.unwrap().plans[0].setting
-    );
+    assert!(or_found_otherwise);
 }

@@ -10,6 +10,8 @@ mod page;
 pub(super) use code::CardContent;
 
 use super::observed::STEP_DEG;
+use super::refusal::Refusal;
+use super::tables::tables;
 use axum::Router;
 use axum::extract::{FromRef, Path, State};
 use axum::http::StatusCode;
@@ -20,6 +22,7 @@ use binnacle_fleet::alerts::{self, CardEffect};
 use binnacle_fleet::compasses;
 use binnacle_fleet::deviation::{DeviationRow, table};
 use binnacle_fleet::models::{self, StoredModel};
+use binnacle_fleet::settings;
 use binnacle_fleet::vessels;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
@@ -79,7 +82,7 @@ pub struct CardCheck {
     /// Lines of the card by compass heading from 0, each 15°.
     pub rows: Vec<CheckedRow>,
     /// Greatest difference between the card and the compass's latest model, at the card's place,
-    /// degrees; none without a model.
+    /// degrees; none where no model gives deviations there.
     #[schema(required, example = 0.2)]
     pub largest_difference_deg: Option<f64>,
 }
@@ -107,6 +110,9 @@ pub enum CardState {
     Withdrawn,
     /// The compass itself is suspected.
     Suspected,
+    /// No card would be printed now: the last heading is too old, the band too wide, or headings
+    /// are ambiguous in the card's field.
+    Unconfirmed,
 }
 
 /// Check a printed deviation card
@@ -142,13 +148,18 @@ async fn check(app: &App, code: &str) -> Result<CardCheck> {
         .as_ref()
         .and_then(|model| table(&model.model.0, content.earth(), STEP_DEG).ok());
     let apart = latest.map(|rows| Apart::of(&content, &rows));
+    let limit_deg = settings::find(db, id).await?.alerts.band95_deg;
+    let now = app.clock.now().into();
     let is_suspected = alerts
         .iter()
         .any(|alert| alert.cause.effect_on_card() == CardEffect::Block);
     let (state, statement) = match (current, apart) {
         _ if is_suspected => suspected(),
         (None, _) => unsupported(withdrawn),
-        (Some(model), apart) => supported(&content, &model, apart),
+        (Some(model), apart) => replaced(&content, &model, apart).unwrap_or_else(|| {
+            let refusal = tables(&model, content.earth(), limit_deg, now).err();
+            refusal.map_or_else(|| in_force(apart), |refusal| unconfirmed(&model, &refusal))
+        }),
     };
     let described = [
         Some(compass.name),
@@ -158,7 +169,7 @@ async fn check(app: &App, code: &str) -> Result<CardCheck> {
     Ok(CardCheck {
         state,
         statement,
-        checked_at: app.clock.now().into(),
+        checked_at: now,
         vessel_name: vessel.name,
         imo_number: vessel.imo_number,
         compass: described
@@ -204,6 +215,13 @@ impl Apart {
         }
         apart
     }
+
+    fn words(self) -> String {
+        format!(
+            " The latest observations differ from it by up to {:.1}°.",
+            self.largest_deg
+        )
+    }
 }
 
 fn suspected() -> (CardState, String) {
@@ -221,11 +239,12 @@ fn unsupported(withdrawn: Option<CardWithdrawn>) -> (CardState, String) {
     (CardState::Withdrawn, says)
 }
 
-fn supported(
+/// Returns the state of a card that a later one replaces.
+fn replaced(
     content: &CardContent,
     latest: &StoredModel,
     apart: Option<Apart>,
-) -> (CardState, String) {
+) -> Option<(CardState, String)> {
     let change = latest.replaces().filter(|change| {
         let known = content.epoch_from();
         known.is_none_or(|known| change.since.seconds_since(known.0) > SAME_CHANGE_S)
@@ -237,18 +256,39 @@ fn supported(
             "This card is no longer valid: the ship’s magnetism changed on {since} ({reason}), \
              and a newer card replaces it."
         );
-        return (CardState::Replaced, says);
+        return Some((CardState::Replaced, says));
     }
-    let largest = apart.map_or(String::new(), |apart| {
-        format!(
-            " The latest observations differ from it by up to {:.1}°.",
-            apart.largest_deg
-        )
-    });
-    if apart.is_some_and(|apart| apart.is_outside) {
-        let says = format!("This card is out of date: print it anew.{largest}");
-        return (CardState::Replaced, says);
-    }
+    let apart = apart.filter(|apart| apart.is_outside)?;
+    let says = format!(
+        "This card is out of date. Print a new one.{}",
+        apart.words()
+    );
+    Some((CardState::Replaced, says))
+}
+
+/// Returns the state of a card in whose place the service would print none now.
+fn unconfirmed(latest: &StoredModel, refusal: &Refusal) -> (CardState, String) {
+    let why = match refusal {
+        Refusal::TooOld { days, .. } => format!("that was {days:.0} days ago"),
+        Refusal::BandTooWide { band95_deg, .. } => {
+            format!("the deviation is now known only to ±{band95_deg:.1}° on some heading")
+        }
+        Refusal::NoHeadings(_) => {
+            "by the latest observations the compass gives no sure heading where the card is for"
+                .to_owned()
+        }
+        Refusal::CompassSuspected { .. } => "an alert on the compass is open".to_owned(),
+    };
+    let until = latest.data_until.day();
+    let says = format!(
+        "This card cannot be confirmed. The last heading known of this compass is from {until}; \
+         {why}."
+    );
+    (CardState::Unconfirmed, says)
+}
+
+fn in_force(apart: Option<Apart>) -> (CardState, String) {
+    let largest = apart.map_or(String::new(), Apart::words);
     (
         CardState::InForce,
         format!("This card is in force.{largest}"),

@@ -18,6 +18,7 @@ pub(super) fn of_card(check: &CardCheck) -> String {
         CardState::Replaced => ("bad", "No longer valid"),
         CardState::Withdrawn => ("bad", "Withdrawn"),
         CardState::Suspected => ("bad", "Compass suspected"),
+        CardState::Unconfirmed => ("bad", "Cannot be confirmed"),
     };
     let mut page = head(title);
     let _ = write!(
@@ -59,8 +60,8 @@ pub(super) fn of_card(check: &CardCheck) -> String {
 pub(super) fn unknown() -> String {
     let mut page = head("Unknown card");
     page.push_str(
-        "<h1>Deviation card</h1><p class='state bad' role=status>This code is not of a card that \
-         this service made. Treat the card as not valid.</p><p>If you typed the address, scan the \
+        "<h1>Deviation card</h1><p class='state bad' role=status>This service did not \
+         issue this card. Treat the card as not valid.</p><p>If you typed the address, scan the \
          code instead.</p></html>",
     );
     page

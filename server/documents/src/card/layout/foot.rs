@@ -14,6 +14,8 @@ const SECOND: f32 = 262.0;
 const COEFFICIENTS: [f32; 2] = [LEFT + 72.0, LEFT + 116.0];
 /// Left edge of the code by which the card is checked, and its side.
 const CODE: (f32, f32) = (LEFT + 138.0, 66.0);
+/// Its caption below it, beyond the quiet zone of four modules (ISO/IEC 18004).
+const CAPTION: f32 = 10.0;
 /// Upper edge of the signatures, from the sheet's upper edge.
 const SIGNATURES: f32 = A4.1 - MARGIN - 68.0;
 const NOTE_LINE: f32 = 9.4;
@@ -62,7 +64,7 @@ fn check(sheet: &mut Sheet, card: &Card, top: f32) {
     let Some(url) = &card.check_url else { return };
     let (left, side) = CODE;
     if qr_code::draw(sheet, (left, top), side, url) {
-        let at = (left + side / 2.0, top + side + 6.5);
+        let at = (left + side / 2.0, top + side + CAPTION);
         let small = Style::plain(6.5).grey(GREY).middle();
         sheet.text(at, small, "scan: is it in force?");
     }

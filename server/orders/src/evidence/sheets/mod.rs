@@ -3,6 +3,7 @@
 //! Invariant: each sheet states that it is a prediction and not a certificate, the order, and the
 //! SHA-256 of its record.
 
+mod as_found;
 mod tables;
 mod values;
 
@@ -39,6 +40,7 @@ fn draw(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
     let mut paper = Paper::new();
     draw_head(&mut paper, &record);
     draw_basis(&mut paper, &record);
+    as_found::draw_as_found(&mut paper, &record);
     tables::draw_correctors(&mut paper, &record)?;
     draw_plan(&mut paper, &record);
     tables::draw_steps(&mut paper, &record);

@@ -59,6 +59,8 @@ async fn the_record_is_available_in_each_form(server: TestServer) {
         assert_eq!(early.problem(), "wrong-state", "{form}");
     }
     job.complete().await;
+    let record = job.person.get(&job.path("/record.json")).await.good();
+    assert_eq!(record["as_found"][0]["dockside"]["pivot"], "sound");
     let mut archive = ZipArchive::new(Cursor::new(job.evidence().await)).unwrap();
     let mut file = |name: &str| {
         let mut bytes = Vec::new();
@@ -85,6 +87,9 @@ async fn the_record_is_available_in_each_form(server: TestServer) {
                 assert!(sheets > 0, "{text}");
                 let says = text.matches("A prediction, not a certificate.").count();
                 assert_eq!(says, sheets);
+                for words in ["As found", "sound: bubble, pivot, gimbals, lubber line"] {
+                    assert!(text.contains(words), "{words}: {text}");
+                }
             }
         }
     }

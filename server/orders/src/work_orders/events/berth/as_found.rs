@@ -8,8 +8,7 @@ impl Event for AsFound {
     fn apply(&self, state: &mut OrderState) {
         let as_read = state.binnacle.as_ref().map(|binnacle| &binnacle.setting);
         if as_read.is_some_and(|setting| *setting != self.setting) {
-            // The reading was judged by correctors that do not stand so.
-            (state.reading, state.binnacle, state.plan) = (None, None, None);
+            state.drop_reading();
         }
         state.as_found = Some(self.clone());
     }

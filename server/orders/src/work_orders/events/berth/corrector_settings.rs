@@ -66,6 +66,7 @@ impl Event for CorrectorMove {
         }
         state.compass_deg = self.compass_deg.or(unmoved_deg);
         // The report covers every corrector.
+        state.has_unexplained_step = false;
         state.inspected_steps = state.steps.len();
         state.inspected_since_reading = state.second_reading.is_some();
         state.moved_to = Some(self.after.clone());
@@ -98,7 +99,12 @@ impl CorrectorMove {
         let mut strengths = state.inferred_strengths.iter();
         let elsewhere =
             strengths.position(|strength| strength.step.is_contradicted(assumed, &self.after));
-        let is_last = |result: &StepResult| result.verdict == StepVerdict::OtherStrength;
+        let is_last = |result: &StepResult| {
+            matches!(
+                result.verdict,
+                StepVerdict::OtherStrength | StepVerdict::FoundOtherwise
+            )
+        };
         let is_read_again = *assumed == self.after
             && self.compass_deg.is_some()
             && state.last_step.as_ref().is_some_and(is_last);

@@ -21,7 +21,8 @@ pub(crate) struct RecordedStep {
     pub step: Step,
     /// Setting of the correctors afterwards; `None` if nothing changed.
     pub setting: Option<Setting>,
-    /// Binnacle, if a corrector was found to have another strength.
+    /// Binnacle, if a corrector was found to have another strength, or to have stood otherwise than
+    /// recorded.
     pub binnacle: Option<Binnacle>,
     /// New plan from there.
     pub replanned: Option<Box<ChosenPlan>>,
@@ -34,13 +35,15 @@ impl Event for RecordedStep {
         state.before_second_reading = None;
         state.drop_confirmation();
         // An unexplained reading is repeated from the last known one.
-        if self.result.verdict != StepVerdict::Unexplained {
+        state.has_unexplained_step = self.result.verdict == StepVerdict::Unexplained;
+        if !state.has_unexplained_step {
             state.compass_deg = Some(self.result.after_deg);
         }
         state.last_step = Some(self.result.clone());
         if let Some(binnacle) = &self.binnacle {
             let before = state.binnacle.replace(binnacle.clone());
             let inferred = before.map(|binnacle| InferredStrength {
+                verdict: self.result.verdict,
                 step: self.step.clone(),
                 before_deg: self.result.before_deg,
                 binnacle,

@@ -3,6 +3,8 @@
 //! Invariants: each process counts for itself, in windows of a minute or a day. A session or a token is a
 //! caller only once it was accepted, so that nobody is a new caller with each invented one.
 
+pub mod letters;
+
 use std::collections::{HashMap, HashSet};
 use std::sync::{Mutex, PoisonError};
 
