@@ -31,7 +31,7 @@ const same = [
   ...['parameters.names.chi13.1', 'parameters.names.chi23.1', 'parameters.names.chi12.1'],
   ...['parameters.names.chi21.1', 'parameters.names.chi11_minus_chi22.1'],
   ...['berth.reading.units.microtesla', 'berth.reading.units.nanotesla'],
-  ...['berth.reading.units.gauss'],
+  ...['berth.reading.units.gauss', 'webhooks.formats.teams'],
 ];
 const sameUnder = ['fields.units.', 'formats.months.'];
 const isSame = (path: string) =>

@@ -54,7 +54,14 @@ export const berth: Translation<typeof en.berth> = {
       ship: 'El buque',
       field: 'El campo',
       doubt: 'Lo que podría falsearlo',
+      shifted: 'En otro rumbo del muelle',
     },
+    shiftedLead:
+      'Cuando lo aconseja un plan: el buque girado 30 grados o más, el mismo magnetómetro, sin mover nada. Revela acero en el muelle.',
+    sent: 'Rellenar con la primera lectura enviada',
+    shiftedHeading: 'Rumbo verdadero allí',
+    shiftedForward: 'Campo allí, a proa',
+    shiftedStarboard: 'Campo allí, a estribor',
     at: 'Hora de la lectura',
     lat: 'Latitud',
     lon: 'Longitud',
@@ -110,6 +117,7 @@ export const berth: Translation<typeof en.berth> = {
       heading: (what) => `${what}: entre 0 y 360.`,
       heel: 'Escora: entre −30 y 30 grados.',
       sd: 'El error debe ser mayor que 0.',
+      shifted: 'El otro rumbo debe diferir al menos 30 grados.',
     },
   },
   found: {
@@ -132,6 +140,10 @@ export const berth: Translation<typeof en.berth> = {
     sound: 'en buen estado, o reparado',
     defective: 'defectuoso',
     turned: 'Girar cada esfera de Kelvin en su sitio: lo máximo que se movió la aguja, en grados',
+    again: 'Indicar de nuevo cómo se encontró',
+    repair: 'Por reparar antes de planificar:',
+    photos: 'Fotografías en que se ven los correctores',
+    untitled: 'Fotografía sin título',
     submit: 'Así se encontró',
     offline: 'Lo que consta de los correctores llega de tierra: en cuanto haya conexión.',
     wrong: {
@@ -181,6 +193,8 @@ export const berth: Translation<typeof en.berth> = {
       fromAft: 'Visto desde popa.',
       fromStarboard: 'Visto desde estribor.',
       faint: 'Tenue: como estaba antes de este paso.',
+      slew: (before: string, after: string) =>
+        `El giro no se dibuja: ${before} antes de este paso, ${after} después.`,
     },
     nowhere: 'sin uso',
     out: 'fuera, con los de respeto',

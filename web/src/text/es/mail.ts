@@ -3,12 +3,18 @@ import type { Translation } from './translation';
 
 export const webhooks: Translation<typeof en.webhooks> = {
   title: 'Webhooks',
-  lead: 'Programas propios que reciben las alertas. Cada mensaje va firmado; la ayuda dice cómo comprobarlo.',
-  none: 'Ningún programa recibe alertas todavía.',
+  lead: 'Programas y chats propios que reciben alertas y órdenes de trabajo. Cada mensaje va firmado; la ayuda dice cómo comprobarlo.',
+  none: 'Ningún programa ni chat recibe alertas todavía.',
   noneViewer: 'Los webhooks los crea un administrador de la compañía.',
   add: 'Añadir un webhook',
   url: 'Dirección',
-  kinds: 'Recibe',
+  format: 'Para',
+  formats: {
+    binnacle: 'Un programa',
+    slack: 'Slack, Mattermost o Rocket.Chat',
+    teams: 'Microsoft Teams',
+  },
+  kinds: 'Enviar',
   urlMissing: 'Introducir una dirección que empiece por https://.',
   kindsMissing: 'Elegir al menos uno.',
   create: 'Crear el webhook',
@@ -22,7 +28,7 @@ export const webhooks: Translation<typeof en.webhooks> = {
   test: 'Enviar una prueba',
   tested: 'La prueba está en camino.',
   remove: 'Eliminar',
-  removeQuestion: '¿Eliminar este webhook, con lo que aún quedaba por enviarle?',
+  removeQuestion: '¿Eliminar este webhook, con los mensajes que esperan?',
   removeConfirm: 'Eliminar el webhook',
 };
 
