@@ -42,6 +42,11 @@ export default tseslint.config(
     },
   },
   {
+    files: ['src/text/*.ts'],
+    // There an assertion says as what a text is known, which is inferred from it.
+    rules: { '@typescript-eslint/no-unnecessary-type-assertion': 'off' },
+  },
+  {
     files: ['public/sw.js'],
     languageOptions: { globals: globals.serviceworker },
   },

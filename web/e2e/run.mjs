@@ -26,6 +26,7 @@ import { people } from './scenarios/people.mjs';
 import { platform } from './scenarios/platform.mjs';
 import { schedule } from './scenarios/schedule.mjs';
 import { session } from './scenarios/session.mjs';
+import { spanish } from './scenarios/spanish.mjs';
 import { told } from './scenarios/told.mjs';
 import { vessel } from './scenarios/vessel.mjs';
 
@@ -47,6 +48,7 @@ const groups = {
   platform,
   told,
   access,
+  spanish,
 };
 
 const artefacts = fileURLToPath(new URL('../../tests/artefacts/', import.meta.url));
@@ -77,12 +79,21 @@ const browser = await chromium.launch({ executablePath: browserPath(), args: fla
 let failed = 0;
 try {
   for (const [name, scenario] of chosen) {
-    const { viewport, colorScheme, serviceWorkers, allowedErrors = [], hosts, run } = scenario;
+    const {
+      viewport,
+      colorScheme,
+      locale,
+      serviceWorkers,
+      allowedErrors = [],
+      hosts,
+      run,
+    } = scenario;
     const known = [settings.url, ...(hosts?.(settings) ?? [])];
     const context = await browser.newContext({
       baseURL: settings.url,
       viewport: viewport ?? { width: 1440, height: 900 },
       colorScheme: colorScheme ?? 'light',
+      locale: locale ?? 'en-US',
       serviceWorkers: serviceWorkers ?? 'allow',
     });
     const page = await context.newPage();

@@ -4,7 +4,7 @@
  */
 
 import type { Change, ChangeCause, DeviationRow, Epoch, LogbookEntry, Timeline } from './api/types';
-import { degrees, eastWest, heading, signed, time } from './format';
+import { degrees, eastWest, fixed, heading, signed, time } from './format';
 import * as text from './text';
 import { withoutItsDay, type At } from './whereabouts';
 
@@ -91,12 +91,12 @@ export function delay(change: Change): string | null {
   if (minutes < 1) return null;
   if (minutes < 90) return `${minutes} min`;
   const hours = Math.round(minutes / 60);
-  return hours < 48 ? `${hours} h` : `${Math.round(hours / 24)} days`;
+  return hours < 48 ? `${hours} h` : text.formats.days(Math.round(hours / 24));
 }
 
 /** A component of a step with its standard error: `+1.9 ± 0.1 µT`. */
 export const component = (nt: number, seNt: number): string =>
-  `${signed(nt / 1000, 1)} ± ${(Math.abs(seNt) / 1000).toFixed(1)}\u00a0µT`;
+  `${signed(nt / 1000, 1)} ± ${fixed(Math.abs(seNt) / 1000, 1)}\u00a0µT`;
 
 /** A figure of a change, and what it is a figure of. */
 export interface Size {

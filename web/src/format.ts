@@ -1,18 +1,26 @@
 /**
  * How values are written for people: angles with one decimal and E or W,
  * headings in three figures, positions in degrees and minutes, times in UTC.
- * Pure functions; what is unknown is a dash, never a zero.
+ * Pure functions but for the language of the page, which says the month's name and the
+ * decimal mark; what is unknown is a dash, never a zero.
  */
 
+import * as text from './text';
 import { aheadMs, type Zone } from './zone';
 
 export const unknown = '–';
 
+/** A figure with so many decimals, and the decimal mark of the language. */
+export const fixed = (value: number, digits: number): string =>
+  value.toFixed(digits).replace('.', text.formats.decimal);
+
+const month = (index: number): string => text.formats.months[index] ?? '';
+
 /** East-positive angle as `3.4° W`; what rounds to zero has no side. */
 export function eastWest(degrees: number | null | undefined, digits = 1): string {
   if (degrees === null || degrees === undefined || !Number.isFinite(degrees)) return unknown;
-  const size = Math.abs(degrees).toFixed(digits);
-  if (Number(size) === 0) return `${size}°`;
+  const size = fixed(Math.abs(degrees), digits);
+  if (isZero(size)) return `${size}°`;
   return `${size}° ${degrees < 0 ? 'W' : 'E'}`;
 }
 
@@ -25,7 +33,7 @@ export function degrees(value: number | null | undefined, digits = 1): string {
 /** Half the width of an interval: `± 0.4°`. */
 export function plusMinus(value: number | null | undefined, digits = 1): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return unknown;
-  return `± ${Math.abs(value).toFixed(digits)}°`;
+  return `± ${fixed(Math.abs(value), digits)}°`;
 }
 
 /** A direction in three figures: `045°`; north is `000°`. */
@@ -43,20 +51,22 @@ export function fineHeading(value: number | null | undefined): string {
 function threeFigures(value: number, digits: number): string {
   const wrapped = ((value % 360) + 360) % 360;
   const rounded = Number(wrapped.toFixed(digits)) % 360;
-  return rounded.toFixed(digits).padStart(digits > 0 ? 4 + digits : 3, '0');
+  return fixed(rounded, digits).padStart(digits > 0 ? 4 + digits : 3, '0');
 }
 
 /** A signed number with a true minus sign; never `-0`. */
 export function signed(value: number, digits: number): string {
-  const size = Math.abs(value).toFixed(digits);
-  if (Number(size) === 0) return size;
+  const size = fixed(Math.abs(value), digits);
+  if (isZero(size)) return size;
   return `${value < 0 ? '−' : '+'}${size}`;
 }
 
 function plain(value: number, digits: number): string {
-  const size = Math.abs(value).toFixed(digits);
-  return value < 0 && Number(size) !== 0 ? `−${size}` : size;
+  const size = fixed(Math.abs(value), digits);
+  return value < 0 && !isZero(size) ? `−${size}` : size;
 }
+
+const isZero = (size: string): boolean => !/[1-9]/.test(size);
 
 export interface Place {
   lat: number;
@@ -81,7 +91,7 @@ function degreesAndMinutes(value: number, figures: number): string {
   // Tenths of a minute are rounded first, so that 59.96′ carries into the degree.
   const tenths = Math.round(Math.abs(value) * 600);
   const whole = Math.floor(tenths / 600);
-  const minutes = ((tenths % 600) / 10).toFixed(1).padStart(4, '0');
+  const minutes = fixed((tenths % 600) / 10, 1).padStart(4, '0');
   return `${String(whole).padStart(figures, '0')}° ${minutes}′`;
 }
 
@@ -96,7 +106,7 @@ export function time(value: string | Date | null | undefined): string {
 export function day(value: string | Date | null | undefined): string {
   const date = toDate(value);
   if (!date) return unknown;
-  return `${date.getUTCDate()} ${months[date.getUTCMonth()] ?? ''} ${date.getUTCFullYear()}`;
+  return `${date.getUTCDate()} ${month(date.getUTCMonth())} ${date.getUTCFullYear()}`;
 }
 
 /** `08:30 UTC` */
@@ -134,7 +144,7 @@ export function atSea(
   const there = new Date(date.getTime() + aheadBy);
   const hour = `${there.toISOString().slice(11, 16)} ${ahead(aheadBy)}`;
   if (clocks === 'ship') return `${day(there)}, ${hour}`;
-  const on = `${there.getUTCDate()} ${months[there.getUTCMonth()] ?? ''}, `;
+  const on = `${there.getUTCDate()} ${month(there.getUTCMonth())}, `;
   return `${time(date)} (${day(there) === day(date) ? '' : on}${hour})`;
 }
 
@@ -163,7 +173,7 @@ export function hoursAtSea(
 function hoursBy(begin: Date, end: Date, zone: string): string {
   const [first, last] = [begin, end].map((date) => date.toISOString().slice(11, 16));
   const on = day(begin) === day(end) ? '' : `${day(end)}, `;
-  return `${day(begin)}, ${first ?? ''} to ${on}${last ?? ''} ${zone}`;
+  return `${day(begin)}, ${first ?? ''} ${text.formats.to} ${on}${last ?? ''} ${zone}`;
 }
 
 /** The nautical zone of a longitude: hours ahead of UTC. */
@@ -174,11 +184,9 @@ export function localTime(value: string): string {
   const date = toDate(value);
   if (!date) return unknown;
   const two = (n: number) => String(n).padStart(2, '0');
-  const on = `${date.getDate()} ${months[date.getMonth()] ?? ''}`;
+  const on = `${date.getDate()} ${month(date.getMonth())}`;
   return `${on}, ${two(date.getHours())}:${two(date.getMinutes())}`;
 }
-
-const months = 'Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec'.split(' ');
 
 function toDate(value: string | Date | null | undefined): Date | null {
   if (value === null || value === undefined) return null;
@@ -191,7 +199,7 @@ export function ago(value: string | null | undefined, now: Date): string {
   const date = toDate(value);
   if (!date) return unknown;
   const seconds = (now.getTime() - date.getTime()) / 1000;
-  return seconds < 60 ? 'just now' : `${lasting(seconds)} ago`;
+  return seconds < 60 ? text.formats.justNow : text.formats.ago(lasting(seconds));
 }
 
 /** How long something takes: `7 min`, `5 h`, `3 days`. */
@@ -201,7 +209,7 @@ export function lasting(seconds: number): string {
   if (minutes < 60) return `${minutes} min`;
   const hours = Math.floor(minutes / 60);
   if (hours < 48) return `${hours} h`;
-  return `${Math.floor(hours / 24)} days`;
+  return text.formats.days(Math.floor(hours / 24));
 }
 
 /** Nanotesla, written for people: `24.1 µT`, kept on one line. */
@@ -245,7 +253,8 @@ export function sentence(clause: string, at?: (instant: string) => string): stri
 }
 
 /** A figure as it was typed, with a true minus sign: `−17.43`. */
-export const typed = (value: number): string => String(value).replace(/^-/, '−');
+export const typed = (value: number): string =>
+  String(value).replace(/^-/, '−').replace('.', text.formats.decimal);
 
 /** A count with thin spaces between thousands: `12 480`. */
 export function count(value: number | null | undefined): string {
@@ -257,7 +266,7 @@ export function count(value: number | null | undefined): string {
 export function euros(value: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return unknown;
   const whole = count(Math.abs(value));
-  return `${value < 0 && whole !== '0' ? '−' : ''}€\u00a0${whole}`;
+  return text.formats.euros(value < 0 && whole !== '0' ? '−' : '', whole);
 }
 
 /** `64 %`, and `< 1 %` for what is there but small. */

@@ -3,8 +3,9 @@ import App from './App.svelte';
 import './app.css';
 import { keepFiles } from './offline';
 import * as text from './text';
+import { loadLanguage } from './text/language';
 
 const target = document.getElementById('app');
 if (!target) throw new Error(text.noMountPoint);
-mount(App, { target });
+void loadLanguage().then(() => mount(App, { target }));
 keepFiles();

@@ -1,7 +1,7 @@
 /** An entry of an order's log as a line for people. Pure. */
 
 import type { WorkOrderEntry, WorkOrderTerms } from '../api/types';
-import { dated, degrees, fineHeading } from '../format';
+import { dated, degrees, fineHeading, fixed } from '../format';
 import * as text from '../text';
 import { feeInWords, termsInWords } from './terms';
 
@@ -72,7 +72,7 @@ function words(kind: string, content: Read['content']): string {
     case 'berth_reading':
       if (content.refusal) return refused(content.refusal);
       return content.checked
-        ? `λ ${content.checked.lambda.toFixed(3)}, ${degrees(content.checked.consistency_deg)}`
+        ? `λ ${fixed(content.checked.lambda, 3)}, ${degrees(content.checked.consistency_deg)}`
         : '';
     case 'plan':
       return content.chosen === undefined

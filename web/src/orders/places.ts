@@ -1,6 +1,7 @@
 /** Where a corrector stands, in the words that an adjuster looks for. Pure. */
 
 import type { BinnacleDesign, CorrectorPlace, CorrectorSetting, PlanStep } from '../api/types';
+import { typed } from '../format';
 import * as text from '../text';
 
 /** A place: where, what of it, and the way the red ends point. */
@@ -27,10 +28,10 @@ export function written(
         red: t().red[place.red],
       };
     case 'pair':
-      return { where: t().mark(String(place.mark_mm)), what: pair(place), red: '' };
+      return { where: t().mark(typed(place.mark_mm)), what: pair(place), red: '' };
     case 'bar':
       return {
-        where: t().length(String(place.length_mm)),
+        where: t().length(typed(place.length_mm)),
         what: t().side[place.side] + turned(place.slew_deg ?? 0),
         red: '',
       };
@@ -46,10 +47,10 @@ export function written(
 function pair({ size, slew_deg = 0 }: { size: string; slew_deg?: number }): string {
   if (slew_deg === 0) return size;
   const way = slew_deg > 0 ? t().slewAft : t().slewForward;
-  return `${size}, ${t().slew(`${Math.abs(slew_deg)}°`, way)}`;
+  return `${size}, ${t().slew(`${typed(Math.abs(slew_deg))}°`, way)}`;
 }
 
-const turned = (slewDeg: number) => (slewDeg === 0 ? '' : `, ${slewDeg}°`);
+const turned = (slewDeg: number) => (slewDeg === 0 ? '' : `, ${typed(slewDeg)}°`);
 
 function carrier(corrector: PlanStep['corrector'], design?: BinnacleDesign): string {
   const rack = corrector === 'athwartship' ? design?.athwartship : design?.fore_and_aft;

@@ -19,7 +19,8 @@ export function isFee(typed: string): boolean {
 export function feeInWords(euros: number | null | undefined): string {
   if (euros === null || euros === undefined) return '';
   const cents = Math.round(euros * 100);
-  const rest = cents % 100 === 0 ? '' : `.${String(cents % 100).padStart(2, '0')}`;
+  const rest =
+    cents % 100 === 0 ? '' : `${text.formats.decimal}${String(cents % 100).padStart(2, '0')}`;
   return text.offers.terms.euros(`${count(Math.floor(cents / 100))}${rest}`);
 }
 

@@ -1,6 +1,7 @@
 /** Coverage as a table: bands of magnetic latitude by sectors of heading. */
 
 import type { Coverage } from '../api/types';
+import { typed } from '../format';
 import * as text from '../text';
 
 export interface CoverageTable {
@@ -57,7 +58,7 @@ export function gaps(table: CoverageTable): { fromDeg: number; toDeg: number }[]
 
 /** `40° N`; the equator has no side. */
 export function magneticLatitude(value: number): string {
-  const size = `${Math.abs(value)}°`;
+  const size = `${typed(Math.abs(value))}°`;
   if (value === 0) return size;
   return value < 0 ? text.coverage.south(size) : text.coverage.north(size);
 }

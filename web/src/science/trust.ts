@@ -1,7 +1,7 @@
 /** How far a model can be trusted, in an officer's words. */
 
 import type { Caution, DeviationRow, Model, Predictions, Prior, References } from '../api/types';
-import { count, day, degrees, heading, microtesla, time } from '../format';
+import { count, day, degrees, fixed, heading, microtesla, time } from '../format';
 import * as text from '../text';
 import { size } from './advice';
 import { normal95 } from './band';
@@ -117,7 +117,7 @@ export function predictions(found: Predictions): Statement | null {
   const figure = t().predictions(count(found.watches_inside), count(found.watches));
   const [from, to] = [count(found.expected_from), count(found.expected_to)];
   if (found.widening <= 1.05) return { figure, meaning: t().predictionsHeld(from, to) };
-  return { figure, meaning: t().predictionsShort(from, to, found.widening.toFixed(1)) };
+  return { figure, meaning: t().predictionsShort(from, to, fixed(found.widening, 1)) };
 }
 
 /** How gyro and satellite compass compare. */

@@ -1,6 +1,8 @@
 /** Alerts: what they say, and what is done about them. */
 
-export const alerts = {
+import { translate } from './language';
+
+export const alerts = translate('alerts', {
   lead: 'What someone should know of or act on. An alert clears itself when its cause is over.',
   unacknowledged: (n: number) => (n === 0 ? 'acknowledged' : `${n} to acknowledge`),
   emptyTitle: 'Nothing to see to',
@@ -82,4 +84,4 @@ export const alerts = {
   toMail: 'Mail',
   toWebhooks: 'Webhooks',
   toNotifications: 'Notifications',
-};
+});

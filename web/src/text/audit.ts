@@ -1,5 +1,7 @@
 /** The audit log. What was done is named by the method and the route, without its beginning. */
 
+import { translate } from './language';
+
 const reads = (what: string) => `Read ${what} of an order`;
 
 const deeds: Record<string, string> = {
@@ -130,7 +132,7 @@ const deeds: Record<string, string> = {
   'GET /work-orders/{id}/evidence.zip': reads('the evidence'),
 };
 
-export const audit = {
+export const audit = translate('audit', {
   title: 'Audit log',
   lead: 'Every change that was made or tried, refused sign-ins, and what firms read of your vessels’ orders. The newest is first; times are UTC.',
   deeds,
@@ -177,4 +179,4 @@ export const audit = {
   empty: 'Nothing was done yet that is noted here.',
   emptyFiltered: 'Nothing noted is like that. Choose less, or another time.',
   notYours: 'An admin of your company reads the audit log.',
-};
+});

@@ -1,8 +1,9 @@
 /** Azimuths: compass errors by a bearing of the sun, another body, a transit or a quay. */
 
 import type { AzimuthCaution, AzimuthKind, HorizonSight } from '../api/types';
+import { translate } from './language';
 
-export const azimuths = {
+export const azimuths = translate('azimuths', {
   title: 'Azimuths',
   lead: 'The compass error by a bearing of the sun, another body, a transit or a charted quay: true less compass, east positive. What was wrong is withdrawn and stays readable.',
   observe: 'Enter an azimuth',
@@ -69,4 +70,4 @@ export const azimuths = {
     grazing_horizon: 'The sun moves along the horizon: the refraction spoils the amplitude.',
     alongside: 'The berth’s steel may deflect the compass: this checks the gyro.',
   } satisfies Record<AzimuthCaution, string>,
-};
+});

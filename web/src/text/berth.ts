@@ -1,6 +1,8 @@
 /** The page at the binnacle: one thing at a time, in an adjuster's words. */
 
-export const berth = {
+import { translate } from './language';
+
+export const berth = translate('berth', {
   outbox: {
     waiting: (n: number) =>
       n === 1 ? '1 thing is waiting to be sent' : `${n} things are waiting to be sent`,
@@ -341,4 +343,4 @@ export const berth = {
     offline: 'The binnacle’s form is not at hand without a connection.',
   },
   more: 'Photographs, remarks and what else there is',
-};
+});

@@ -1,8 +1,9 @@
 /** Binnacles, and the particulars that a deviation card shows. */
 
 import type { CompassRole } from '../api/types';
+import { translate } from './language';
 
-export const binnacles = {
+export const binnacles = translate('binnacles', {
   title: 'Binnacle and correctors',
   lead: 'What this compass stands in, the correctors on board, and how they stand. Plans rest on it; nothing that was written is ever lost.',
   none: 'The binnacle of this compass is not entered yet. Without it there is no plan for an adjustment.',
@@ -61,10 +62,10 @@ export const binnacles = {
     side: 'Side',
     position: 'Position',
   },
-};
+});
 
 /** The fleet's binnacles. */
-export const fleetBinnacles = {
+export const fleetBinnacles = translate('fleetBinnacles', {
   lead: 'What each compass stands in, and the correctors on board. Without it no adjustment of that compass can be planned.',
   missing: (n: number, all: number) =>
     n === 0
@@ -91,9 +92,9 @@ export const fleetBinnacles = {
   types: 'Types that come with the product',
   typesLead:
     'Import a binnacle of another type as a file, on the Adjustment tab of the vessel’s page.',
-};
+});
 
-export const particulars = {
+export const particulars = translate('particulars', {
   title: 'Particulars',
   lead: 'What the deviation card says of ship and compass.',
   amend: 'Amend…',
@@ -121,4 +122,4 @@ export const particulars = {
   saved: 'Saved.',
   addCompass: 'Add a compass…',
   add: 'Add the compass',
-};
+});

@@ -1,8 +1,9 @@
 /** What changed, and what people report. */
 
 import type { CargoKind, ChangeCause, LogbookKind } from '../api/types';
+import { translate } from './language';
 
-export const changes = {
+export const changes = translate('changes', {
   title: 'What changed',
   lead: 'The ship’s magnetism stays the same through an epoch. What ended one, or disturbed the compass for a while, is found in the samples and stands here, the latest first.',
   none: (since: string) => `No change found since ${since}, when the first sample was taken.`,
@@ -80,9 +81,9 @@ export const changes = {
     'Its curve is foretold by the adjustment; no sample has been fitted or verified it yet.',
   epochNoModel: 'No model of this epoch yet.',
   reported: (what: string) => `Reported: ${what}`,
-};
+});
 
-export const timeAxis = {
+export const timeAxis = translate('timeAxis', {
   label: 'Epochs, changes, reports and port calls over time',
   hint: 'Choose a mark to read what happened; arrow keys go from one to the next.',
   lanes: { epochs: 'Epochs', changes: 'Changes', reports: 'Logbook', calls: 'Port calls' },
@@ -99,9 +100,9 @@ export const timeAxis = {
   kind: 'Kind',
   when: 'When',
   more: 'More',
-};
+});
 
-export const logbook = {
+export const logbook = translate('logbook', {
   title: 'Logbook',
   lead: 'What bears on the ship’s magnetism, reported ashore or on board. What was wrong is withdrawn and stays readable.',
   report: 'Report',
@@ -194,4 +195,4 @@ export const logbook = {
     degaussing: 'A new epoch begins: permanent magnetism is learnt anew.',
     note: 'Changes nothing in the model.',
   } satisfies Record<LogbookKind, string>,
-};
+});

@@ -1,26 +1,28 @@
 /** What every page shows, and the way in. */
 
-export const product = 'Binnacle';
-export const tagline = 'The magnetic compass, corrected at sea';
-export const noMountPoint = 'index.html has no element with the id "app"';
+import { onCatalogue, translate } from './language';
 
-export const skip = 'Skip to content';
-export const loading = 'Loading…';
-export const retry = 'Try again';
-export const chartNotLoaded = 'The drawing could not be loaded. Its figures stand in the table.';
-export const cancel = 'Cancel';
-export const copy = 'Copy';
-export const copied = 'Copied';
-export const showMore = (n: number) => `Show ${n} more`;
-export const optional = 'optional';
-export const unfinished = 'Finish this, or clear it.';
-export const utc = 'UTC';
+export let product = 'Binnacle';
+export let tagline = 'The magnetic compass, corrected at sea';
+export let noMountPoint = 'index.html has no element with the id "app"';
+
+export let skip = 'Skip to content';
+export let loading = 'Loading…';
+export let retry = 'Try again';
+export let chartNotLoaded = 'The drawing could not be loaded. Its figures stand in the table.';
+export let cancel = 'Cancel';
+export let copy = 'Copy';
+export let copied = 'Copied';
+export let showMore = (n: number) => `Show ${n} more`;
+export let optional = 'optional';
+export let unfinished = 'Finish this, or clear it.';
+export let utc = 'UTC';
 /** On paper: of when it is. */
-export const asOf = (when: string) => `As of ${when}`;
+export let asOf = (when: string) => `As of ${when}`;
 
-export const signOut = 'Sign out';
+export let signOut = 'Sign out';
 
-export const signIn = {
+export const signIn = translate('signIn', {
   title: 'Sign in',
   email: 'E-mail',
   password: 'Password',
@@ -50,9 +52,9 @@ export const signIn = {
     throttled: 'Too many attempts failed. Wait a little, then try again.',
     failed: 'Something went wrong here. Try again.',
   } as Record<string, string>,
-};
+});
 
-export const invitation = {
+export const invitation = translate('invitation', {
   title: 'Set your password',
   help: 'At least 12 characters: a few words that belong together only to you are easy to keep.',
   code: 'One-time code',
@@ -62,16 +64,16 @@ export const invitation = {
   missing: 'Enter the code and a password.',
   unknown: 'This code is not known, or was used. Ask your admin for another.',
   done: (email: string) => `Your password is set. Sign in as ${email}.`,
-};
+});
 
-export const theme = {
+export const theme = translate('theme', {
   label: 'Colours',
   auto: 'Auto',
   light: 'Day',
   dark: 'Night',
-};
+});
 
-export const live = {
+export const live = translate('live', {
   connecting: 'Connecting',
   live: 'Live',
   lost: 'Not live',
@@ -80,9 +82,9 @@ export const live = {
   /** Said on the page when it lasts. */
   without: (since: string) =>
     `Not connected since ${since}. What you see is of then or before, and what you change may not get through. It is brought up to date as soon as the connection is back.`,
-};
+});
 
-export const problem = {
+export const problem = translate('problem', {
   offline: 'The server cannot be reached. Check the connection.',
   offlineNothing:
     'The server cannot be reached, and nothing of this is kept here. It comes as soon as the connection is back.',
@@ -103,9 +105,9 @@ export const problem = {
     'Vessels, alerts and the schedule are for the people of the fleet. What your firm is asked for and has agreed to stands with your orders.',
   toOrders: 'To my orders',
   title: 'This could not be shown',
-};
+});
 
-export const document = {
+export const document = translate('document', {
   fleet: 'Fleet · Binnacle',
   vessel: (name: string) => `${name} · Binnacle`,
   signIn: 'Sign in · Binnacle',
@@ -132,10 +134,10 @@ export const document = {
   scheduleRules: 'Schedule rules · Binnacle',
   newOrder: 'Order an adjustment · Binnacle',
   order: (vessel: string) => `Adjustment of ${vessel} · Binnacle`,
-};
+});
 
 /** What the pages are called that the bar on top leads to. */
-export const pages = {
+export const pages = translate('pages', {
   label: 'Pages',
   fleet: 'Fleet',
   alerts: 'Alerts',
@@ -153,4 +155,25 @@ export const pages = {
   help: 'Help',
   menu: 'Menu',
   yourAccount: 'Your settings',
-};
+});
+
+onCatalogue((catalogue) => {
+  ({
+    product,
+    tagline,
+    noMountPoint,
+    skip,
+    loading,
+    retry,
+    chartNotLoaded,
+    cancel,
+    copy,
+    copied,
+    showMore,
+    optional,
+    unfinished,
+    utc,
+    asOf,
+    signOut,
+  } = catalogue);
+});

@@ -1,8 +1,9 @@
 /** The curve, what it is made of, and what would better it. */
 
 import type { ParameterName } from '../api/types';
+import { translate } from './language';
 
-export const deviation = {
+export const deviation = translate('deviation', {
   title: 'Deviation',
   lead: 'What the compass is off the magnetic heading: magnetic = compass + deviation, east positive.',
   axisX: 'Compass heading',
@@ -65,9 +66,9 @@ export const deviation = {
   noBand: 'This model came without errors: no band can be given.',
   uncertain: (wide: string) =>
     `The band is ${wide} wide or more on some headings: data from this magnetic latitude are missing.`,
-};
+});
 
-export const table = {
+export const table = translate('table', {
   title: 'Table of deviations',
   caption: (place: string, day: string) =>
     `Deviation every 15° of compass heading at ${place} on ${day}`,
@@ -76,9 +77,9 @@ export const table = {
   point: 'Point',
   deviation: 'Deviation',
   band: '95 %',
-};
+});
 
-export const residuals = {
+export const residuals = translate('residuals', {
   title: 'Residuals over time',
   lead: 'Measured less predicted deviation, each sample by the model of its own epoch. What the models do not explain shows here: scatter, and a slope that is still too small to be called a change.',
   axisY: 'Residual',
@@ -96,9 +97,9 @@ export const residuals = {
   none: 'No residuals yet: they need a model.',
   period: 'Period',
   days: (n: number) => `${n} days`,
-};
+});
 
-export const coverage = {
+export const coverage = translate('coverage', {
   title: 'Coverage',
   lead: 'Samples by compass heading and magnetic latitude. Headings fix the curve where the ship has been; different magnetic latitudes fix it elsewhere.',
   caption: 'Number of samples by compass heading (columns) and magnetic latitude (rows)',
@@ -117,9 +118,9 @@ export const coverage = {
     'All samples are from one band of magnetic latitude: permanent and induced magnetism cannot be told apart yet, and the curve at a distant place rests on experience with other ships.',
   north: (v: string) => `${v} N`,
   south: (v: string) => `${v} S`,
-};
+});
 
-export const sailNext = {
+export const sailNext = translate('sailNext', {
   title: 'What to sail next',
   lead: 'Where a watch would teach most about this compass: four hours on one compass heading; three watches are on three successive days. The band is the 95 % band, as a mean over all headings.',
   here: 'In these waters',
@@ -141,9 +142,9 @@ export const sailNext = {
     `Only azimuths show the error of the gyro or satellite compass itself. One, of the sun or of a transit, would narrow the band here from ${now} to ${one}; twenty in the course of a voyage to ${many}.`,
   magneticLatitude:
     'Magnetic latitude follows the dip of the earth’s field; it differs from the chart’s latitude by some ten degrees.',
-};
+});
 
-export const parameters = {
+export const parameters = translate('parameters', {
   title: 'The ship’s magnetism',
   lead: 'The seven quantities behind the curve, each in proportion to the mean shielding λ, and the constant.',
   name: 'Quantity',
@@ -188,9 +189,9 @@ export const parameters = {
   epochOpen: 'now',
   epochStart: 'the beginning',
   to: 'to',
-};
+});
 
-export const coefficients = {
+export const coefficients = translate('coefficients', {
   title: 'Coefficients',
   lead: 'At the last position. Exact ones, with their standard errors, give the curve by the exact formula; handbook ones are the five-term approximation that older tables and adjusters use.',
   name: 'Coefficient',
@@ -203,4 +204,4 @@ export const coefficients = {
     D: 'soft iron along and across: quadrantal, greatest on intercardinals',
     E: 'soft iron askew: quadrantal, greatest on cardinals',
   },
-};
+});

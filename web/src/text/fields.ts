@@ -1,6 +1,8 @@
 /** What the forms call the fields that the API names, for when it refuses one. */
 
-export const fields = {
+import { translate } from './language';
+
+export const fields = translate('fields', {
   /** A field that a form calls other than by its name in plain words; by that name. */
   labels: {
     address: 'E-mail address',
@@ -75,4 +77,4 @@ export const fields = {
   text: 'must be a text',
   yesOrNo: 'must be yes or no',
   choice: 'is not one of the choices',
-};
+});

@@ -1,6 +1,8 @@
 /** The search over everything. */
 
-export const finder = {
+import { translate } from './language';
+
+export const finder = translate('finder', {
   title: 'Find',
   open: 'Find…',
   keys: 'Ctrl K',
@@ -20,7 +22,13 @@ export const finder = {
     setting: 'Setting',
   },
   /** What is found on the reader's own page of the settings. */
-  settings: ['Password', 'Second factor', 'API tokens', 'Times: UTC or ship’s time'],
+  settings: [
+    'Password',
+    'Second factor',
+    'API tokens',
+    'Times: UTC or ship’s time',
+    'Language · Idioma',
+  ],
   order: (vessel: string) => `Adjustment of ${vessel}`,
   call: (vessel: string, on: string) => `${vessel} arrives ${on}`,
-};
+});

@@ -1,6 +1,8 @@
 /** The firms' page, and an adjuster's own. */
 
-export const firms = {
+import { translate } from './language';
+
+export const firms = translate('firms', {
   lead: 'Who adjusts your compasses, where and on what terms. The schedule plans with them; no other operator sees your terms.',
   emptyTitle: 'No firm yet',
   empty: 'Add a firm, or ask the platform’s admin to connect you with one that is here already.',
@@ -74,10 +76,10 @@ export const firms = {
     Sat: 'Saturday',
     Sun: 'Sunday',
   } as Record<string, string>,
-};
+});
 
 /** A firm's own page of its teams. */
-export const teams = {
+export const teams = translate('teams', {
   title: 'Teams',
   lead: 'Who of your firm works when and where. All operators that you work for plan with them, and no team is booked twice. Without any, each operator plans with the number in its terms.',
   none: 'Your firm states no teams: operators plan with the number in their terms.',
@@ -113,9 +115,9 @@ export const teams = {
     fieldWrong: (team: number, field: string) => `Team ${team}: “${field}” is missing or wrong.`,
     lineWrong: (line: number) => `Line ${line} of the travel is not two UN/LOCODEs and hours.`,
   },
-};
+});
 
-export const home = {
+export const home = translate('home', {
   lead: (firm: string) => `Ships that ${firm} is asked to adjust, and has.`,
   emptyTitle: 'Nothing to do',
   empty: 'When an operator offers an order to your firm, it is here.',
@@ -135,4 +137,4 @@ export const home = {
   keptAt: (time: string) => `Kept on this device as it was on ${time}`,
   waiting: (n: number) =>
     n === 1 ? '1 thing is waiting to be sent' : `${n} things are waiting to be sent`,
-};
+});

@@ -1,8 +1,9 @@
 /** The fleet's page: map, table, and the views of it. */
 
 import type { OperatorState } from '../orders/order';
+import { translate } from './language';
 
-export const fleet = {
+export const fleet = translate('fleet', {
   title: 'Fleet',
   of: (operator: string) => `Fleet of ${operator}`,
   shown: (n: number, all: number) =>
@@ -86,9 +87,9 @@ export const fleet = {
   tagRemove: 'Remove the tag',
   tagMissing: 'Write a tag.',
   tagged: (n: number) => (n === 1 ? '1 vessel changed.' : `${n} vessels changed.`),
-};
+});
 
-export const map = {
+export const map = translate('map', {
   title: 'Map',
   label: 'Map of the fleet',
   help: 'Arrow keys choose the next vessel in that direction, Enter opens her page, plus and minus zoom, Shift with an arrow key moves the map, Escape chooses none.',
@@ -108,4 +109,4 @@ export const map = {
   chosen: (name: string, place: string, when: string) => `${name}, ${place}, ${when}`,
   open: 'Open her page',
   coasts: 'Coasts: Natural Earth',
-};
+});

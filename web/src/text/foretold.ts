@@ -1,6 +1,8 @@
 /** A curve that comes from an adjustment, and not yet from headings at sea. */
 
-export const foretold = {
+import { translate } from './language';
+
+export const foretold = translate('foretold', {
   anOrder: 'a work order',
   order: (port: string, day: string) => `work order ${port}, ${day}`,
   proof: {
@@ -28,4 +30,4 @@ export const foretold = {
     'Nothing has been measured since: the band is of the model before it, of the reading at the berth and of the correctors that were moved.',
   worth: (until: string) =>
     `Held against what was foretold; the last of ${until}. They tell whether it holds, the curve is not fitted to them.`,
-};
+});

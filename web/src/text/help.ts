@@ -1,6 +1,8 @@
 /** The help. */
 
-export const help = {
+import { translate } from './language';
+
+export const help = translate('help', {
   title: 'Help',
   lead: 'What each page is for and how its figures come about.',
   search: 'Search the help',
@@ -13,4 +15,4 @@ export const help = {
   tryApiLead: 'Every operation with its fields and an example, to be tried with your own account.',
   all: 'All topics',
   about: (what: string) => `Help: ${what}`,
-};
+});

@@ -18,6 +18,7 @@ export * from './finder';
 export * from './firms';
 export * from './fleet';
 export * from './foretold';
+export * from './formats';
 export * from './help';
 export * from './limits';
 export * from './mail';

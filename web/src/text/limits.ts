@@ -1,6 +1,8 @@
 /** A vessel's settings: when there are alerts, how samples are read and taken. */
 
-export const limits = {
+import { translate } from './language';
+
+export const limits = translate('limits', {
   title: 'Alert limits and settings',
   lead: 'From when on there are alerts about her, how her samples are read, and how her agents take them.',
   parts: {
@@ -51,4 +53,4 @@ export const limits = {
   saved: 'The settings are saved.',
   wrong: (field: string, range: string, whole: boolean) =>
     `“${field}” is ${whole ? 'a whole number' : 'a number'} from ${range}.`,
-};
+});

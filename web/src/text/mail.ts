@@ -1,8 +1,9 @@
 /** Who is told of alerts: programs and people, and what they were sent. */
 
 import type { MessageKind, Severity } from '../api/types';
+import { translate } from './language';
 
-export const webhooks = {
+export const webhooks = translate('webhooks', {
   title: 'Webhooks',
   lead: 'Programs and chats of yours that hear of alerts and work orders. Each message is signed; the help has how to verify that.',
   none: 'No program or chat hears of alerts yet.',
@@ -31,9 +32,9 @@ export const webhooks = {
   remove: 'Remove',
   removeQuestion: 'Remove this webhook, with the messages that wait for it?',
   removeConfirm: 'Remove the webhook',
-};
+});
 
-export const outbox = {
+export const outbox = translate('outbox', {
   title: 'Latest messages',
   none: 'Nothing was sent yet.',
   kind: {
@@ -63,9 +64,9 @@ export const outbox = {
   dead: (n: number) => `${n} given up`,
   attempts: (n: number) => (n === 1 ? '1 try' : `${n} tries`),
   again: 'Send again',
-};
+});
 
-export const mail = {
+export const mail = translate('mail', {
   title: 'Mail',
   lead: 'Who gets alerts by mail: when an alert is raised, when it gets worse, and when it is over.',
   notSetUp:
@@ -89,4 +90,4 @@ export const mail = {
   remove: 'Remove',
   removeQuestion: 'Send this address no more mail?',
   removeConfirm: 'Remove the address',
-};
+});

@@ -1,6 +1,8 @@
 /** Why somebody should look at a vessel. */
 
-export const needs = {
+import { translate } from './language';
+
+export const needs = translate('needs', {
   title: 'Needs',
   unknown: (why: string) => `What is needed could not be found out in full: ${why}`,
   alerts: 'Open alerts',
@@ -19,4 +21,4 @@ export const needs = {
   worstThere: (angle: string, on: string) => `up to ${angle} there, on ${on}`,
   order: 'Work order',
   noOrder: 'none is open',
-};
+});

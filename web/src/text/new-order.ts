@@ -1,6 +1,8 @@
 /** Ordering an adjustment by hand. */
 
-export const newOrder = {
+import { translate } from './language';
+
+export const newOrder = translate('newOrder', {
   title: 'Order an adjustment',
   lead: 'For one compass, at one berth. What the adjuster does there follows on the order’s own page, on a phone too.',
   back: 'All work orders',
@@ -59,4 +61,4 @@ export const newOrder = {
   needsModel: 'a model: it comes with ordinary sailing',
   needsBinnacle: 'its binnacle, with the correctors on board and how they stand',
   toBinnacle: 'Put it in',
-};
+});

@@ -1,6 +1,8 @@
 /** What a person is told, and how. */
 
-export const notifications = {
+import { translate } from './language';
+
+export const notifications = translate('notifications', {
   title: 'Notifications',
   lead: 'What concerns you, the newest first.',
   emptyTitle: 'Nothing yet',
@@ -63,4 +65,4 @@ export const notifications = {
     busy: 'Saving…',
     done: 'Saved.',
   },
-};
+});

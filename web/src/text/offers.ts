@@ -1,6 +1,8 @@
 /** What is between an operator and firms about an order: offers, answers, messages. */
 
-export const offers = {
+import { translate } from './language';
+
+export const offers = translate('offers', {
   title: 'Firms',
   lead: 'Who was asked to do it, and what they answered.',
   leadOfYours: 'What the operator asks of your firm.',
@@ -100,9 +102,9 @@ export const offers = {
   why: 'Why',
   whyMissing: 'Say why.',
   gone: 'It is no order of yours any more.',
-};
+});
 
-export const messages = {
+export const messages = translate('messages', {
   title: 'Messages',
   lead: 'Between operator and firm; no other firm reads them.',
   none: 'Nothing was written yet.',
@@ -114,4 +116,4 @@ export const messages = {
   send: 'Send',
   sending: 'Sending…',
   missing: 'Write something first.',
-};
+});

@@ -1,8 +1,9 @@
 /** Work orders: the list, ordering one, and what a superintendent sees of one. */
 
 import type { AdjustmentCure } from '../api/types';
+import { translate } from './language';
 
-export const orders = {
+export const orders = translate('orders', {
   lead: 'Compasses to be adjusted at the berth, without swinging the ship: what was ordered, how far it has come, and whether the sea has confirmed it.',
   order: 'Order an adjustment',
   which: 'Which orders',
@@ -65,9 +66,9 @@ export const orders = {
     proposed: 'Your firm would have it on other terms: they wait for the operator’s answer.',
     accepted: 'Your firm has it. Next: your adjuster comes on board.',
   } as Record<string, string | undefined>,
-};
+});
 
-export const order = {
+export const order = translate('order', {
   back: 'All work orders',
   title: (vessel: string) => `${vessel}: adjustment`,
   views: 'Show',
@@ -251,9 +252,9 @@ export const order = {
       'For a ship that sends no more. Nothing will say that the adjustment was verified; its card stays predicted.',
     missing: 'Say something of it.',
   },
-};
+});
 
-export const refusals = {
+export const refusals = translate('refusals', {
   cures: 'What would cure it',
   found: 'What was found',
   couldBe: 'Each of these alone would explain it',
@@ -269,4 +270,4 @@ export const refusals = {
       'See to the lubber line and to how gyro or satellite compass are aligned: no corrector cures this.',
     swing: 'Swing the ship.',
   } satisfies Record<AdjustmentCure, string>,
-};
+});

@@ -1,6 +1,8 @@
 /** The deviation card and the deviation book. */
 
-export const card = {
+import { translate } from './language';
+
+export const card = translate('card', {
   title: 'Deviation card',
   lead: 'What the model predicts on each heading, with its 95 % band, on one sheet to be printed. It is marked as predicted until headings at sea have verified the adjustment that it comes from. It is no certificate: the place of a signature stays blank.',
   make: 'Make the card',
@@ -34,9 +36,9 @@ export const card = {
     signature: 'an adjuster’s signature',
     next_due: 'when the next adjustment is due',
   },
-};
+});
 
-export const book = {
+export const book = translate('book', {
   title: 'Deviation book',
   lead: 'Compass errors as they were observed under way: one in each watch of four hours, and one after each alteration of course by 20° or more, beside what the card of the time said.',
   from: 'First day',
@@ -45,4 +47,4 @@ export const book = {
   wrongOrder: 'The last day is before the first.',
   pdf: 'Print (PDF)',
   csv: 'Table (CSV)',
-};
+});

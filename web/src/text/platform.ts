@@ -1,6 +1,8 @@
 /** The page of who runs the platform. */
 
-export const platform = {
+import { translate } from './language';
+
+export const platform = translate('platform', {
   lead: 'The companies on this server. What a fleet’s vessels do is its operator’s business and is not seen here.',
   nameMissing: 'A company needs a name.',
   entering: 'Entering…',
@@ -42,4 +44,4 @@ export const platform = {
     done: (operator: string, firm: string) => `${operator} works with ${firm}.`,
     ended: (operator: string, firm: string) => `${operator} works with ${firm} no more.`,
   },
-};
+});

@@ -1,6 +1,8 @@
 /** Reports: what is due, how bad it is, what was done and what it saved. */
 
-export const reports = {
+import { translate } from './language';
+
+export const reports = translate('reports', {
   title: 'Reports',
   lead: (fleet: string, vessels: number, compasses: number) =>
     `${fleet}: ${vessels} vessel${vessels === 1 ? '' : 's'}, ${compasses} compass${compasses === 1 ? '' : 'es'}`,
@@ -72,4 +74,4 @@ export const reports = {
     done: 'Saved.',
     wrong: (field: string) => `This is no number: ${field}.`,
   },
-};
+});

@@ -1,11 +1,13 @@
 /** The schedule: who adjusts which compass where and when, and what it costs. */
 
+import { translate } from './language';
+
 const months =
   'January February March April May June July August September October November December'.split(
     ' ',
   );
 
-export const schedule = {
+export const schedule = translate('schedule', {
   lead: 'Which compass is adjusted at which port call, by which firm, and what that costs. The plan follows by itself when a port call, a need or an answer changes.',
   emptyTitle: 'There is no plan yet',
   empty:
@@ -280,4 +282,4 @@ export const schedule = {
       `${created} new, ${amended} changed, ${unchanged} as before, ${withdrawn} withdrawn.`,
     over: (n: number) => `${n} that are over were passed by.`,
   },
-};
+});

@@ -1,6 +1,8 @@
 /** The settings: oneself, one's people, what is on board, and the schedule's rules. */
 
-export const settings = {
+import { translate } from './language';
+
+export const settings = translate('settings', {
   navigation: 'Settings',
   pages: {
     settings: 'You',
@@ -15,6 +17,13 @@ export const settings = {
   webhooks: 'Webhooks',
   remove: 'Remove',
   sure: 'Are you sure?',
+
+  language: {
+    title: 'Language · Idioma',
+    lead: 'Sentences that the server writes, such as the summary of an alert, and the help are in English.',
+    label: 'Language of the dashboard',
+    kept: 'Kept in this browser. Another language loads the page anew.',
+  },
 
   clocks: {
     title: 'Times',
@@ -240,4 +249,4 @@ export const settings = {
       change_centideg: 'A change of deviation that counts, degrees',
     } as Record<string, string>,
   },
-};
+});

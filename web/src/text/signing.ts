@@ -1,6 +1,8 @@
 /** The keys that a firm signs with, as its own people see them. */
 
-export const signing = {
+import { translate } from './language';
+
+export const signing = translate('signing', {
   title: 'Signing keys',
   lead: 'Your firm signs its records with a key. Whoever reads the evidence of a record is told that a registered key is yours.',
   none: 'None is registered: what your firm signs is said to be of an unknown key.',
@@ -33,4 +35,4 @@ export const signing = {
     submit: 'Register it',
     busy: 'Registering…',
   },
-};
+});

@@ -1,6 +1,8 @@
 /** The first run of a server, and what a company does until its vessels are live. */
 
-export const firstRun = {
+import { translate } from './language';
+
+export const firstRun = translate('firstRun', {
   title: 'Set up this server',
   tagline: 'It has no user yet. Create your company and your account.',
   code: 'Set-up code',
@@ -16,9 +18,9 @@ export const firstRun = {
   made: (email: string) => `Your company is made, with the account ${email}.`,
   notSignedIn: (why: string) => `Signing in failed: ${why}`,
   demo: 'To look around first, make demo runs a fleet of simulated vessels beside this server.',
-};
+});
 
-export const forgotten = {
+export const forgotten = translate('forgotten', {
   open: 'Forgot your password?',
   lead: 'We send you a link with which you set a new password. It is valid for an hour.',
   submit: 'Send the link',
@@ -27,9 +29,9 @@ export const forgotten = {
     `If ${email} has an account here, an e-mail is on its way. Check your inbox.`,
   missing: 'Enter your e-mail address.',
   back: 'Back to sign-in',
-};
+});
 
-export const start = {
+export const start = translate('start', {
   title: 'Getting started',
   link: (n: number) =>
     n === 1
@@ -79,4 +81,4 @@ export const start = {
   recording: 'Recording…',
   day: (vessel: string) => `Day on which ${vessel} was last adjusted`,
   dayMissing: 'Choose a day.',
-};
+});

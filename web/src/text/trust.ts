@@ -1,6 +1,8 @@
 /** How far a model is to be trusted, and why there is none. */
 
-export const trust = {
+import { translate } from './language';
+
+export const trust = translate('trust', {
   title: 'How far to trust the curve',
   lead: 'The 95 % band: nineteen times in twenty the deviation is no further off than this.',
   hereTitle: 'In these waters',
@@ -83,9 +85,9 @@ export const trust = {
   noAnswer: 'no answer',
   noAnswerLong:
     'No answer: on some heading the ship’s magnetism would outweigh the earth’s field there.',
-};
+});
 
-export const refusal = {
+export const refusal = translate('refusal', {
   withdrawn: (since: string, reason: string) =>
     `The last card has not held since ${since} (${reason}): do not steer by it.`,
   todo: 'What to do',
@@ -168,4 +170,4 @@ export const refusal = {
   none: 'No sample has been analysed yet.',
   noneTodo:
     'Have the agent on board enrolled if that is not done. Once the ship is at sea, samples come in with its uploads.',
-};
+});

@@ -1,6 +1,8 @@
 /** A vessel, and what is on board. */
 
-export const vessel = {
+import { onCatalogue, translate } from './language';
+
+export const vessel = translate('vessel', {
   back: 'Fleet',
   callSign: 'Call sign',
   flag: 'Flag',
@@ -18,21 +20,21 @@ export const vessel = {
   noModelLead: 'This is what is missing now:',
   noModelHow:
     'Ordinary sailing brings them in: the agent keeps every stretch in which the ship holds a steady heading at speed, away from the berth.',
-};
+});
 
-export const vesselTabsLabel = 'About the vessel';
-export const vesselTabs = {
+export let vesselTabsLabel = 'About the vessel';
+export const vesselTabs = translate('vesselTabs', {
   overview: 'Overview',
   deviation: 'Deviation',
   changes: 'Changes',
   adjustment: 'Adjustment',
   agent: 'Agent',
   settings: 'Settings',
-};
+});
 
-export const vesselPanelsLabel = 'On this page';
+export let vesselPanelsLabel = 'On this page';
 /** The panels of the vessel's page, short, by their ids. */
-export const vesselPanels = {
+export const vesselPanels = translate('vesselPanels', {
   deviation: 'Curve and table',
   card: 'Card',
   book: 'Deviation book',
@@ -51,10 +53,10 @@ export const vesselPanels = {
   enrol: 'Enrol',
   particulars: 'Particulars',
   limits: 'Limits',
-};
+});
 
 /** What to do about a vessel now. */
-export const now = {
+export const now = translate('now', {
   finding: 'Finding out what to do…',
   unknown: 'Not known yet',
   unknownWhy: 'The alerts, due dates and work orders of this vessel have not all arrived.',
@@ -78,10 +80,10 @@ export const now = {
   noModelWhy:
     'The first deviation curve comes after some days of sailing on different headings. There is nothing to do until then.',
   toAgent: 'See the agent',
-};
+});
 
 /** Deviation over time. */
-export const history = {
+export const history = translate('history', {
   title: 'Deviation over time',
   lead: 'The deviation on each heading, as if the vessel had been at the last position all along. A change of the ship’s magnetism is a step; the shaded bands are 95 %.',
   headings: 'Headings',
@@ -101,9 +103,9 @@ export const history = {
   epoch: 'Deviation by epoch',
   change: 'Change of the ship’s magnetism',
   passing: 'Storm, cargo or other disturbance',
-};
+});
 
-export const agents = {
+export const agents = translate('agents', {
   title: 'On board',
   lead: 'Each installation of the agent reports one compass as one stream.',
   none: 'No agent has been enrolled for this vessel yet.',
@@ -164,9 +166,9 @@ export const agents = {
     thinned: 'accepted, then left out for want of room or budget',
   } as Record<string, string>,
   otherReason: (name: string) => `refused: ${name.replaceAll('_', ' ')}`,
-};
+});
 
-export const enrol = {
+export const enrol = translate('enrol', {
   title: 'Enrol an agent',
   lead: 'Makes a code that one agent on board exchanges for its own key.',
   compass: 'For the compass',
@@ -176,11 +178,15 @@ export const enrol = {
   onBoard: 'On board, type:',
   another: 'Make another code',
   qr: 'QR code with the command to be typed on board',
-};
+});
 
-export const orderPanel = {
+export const orderPanel = translate('orderPanel', {
   title: 'Adjustment',
   lead: 'Work orders for this compass.',
   none: 'No adjustment is under way.',
   order: 'Order an adjustment',
-};
+});
+
+onCatalogue((catalogue) => {
+  ({ vesselTabsLabel, vesselPanelsLabel } = catalogue);
+});

@@ -1,6 +1,8 @@
 /** What is said of a vessel wherever she is shown, and adding one. */
 
-export const vessels = {
+import { translate } from './language';
+
+export const vessels = translate('vessels', {
   imo: 'IMO',
   onHeading: (heading: string) => `on ${heading}`,
   band: (band: string) => `${band} (95 %)`,
@@ -21,10 +23,10 @@ export const vessels = {
   create: 'Add vessel',
   creating: 'Adding…',
   nameMissing: 'A vessel needs a name.',
-};
+});
 
 /** Taking a vessel out of service. */
-export const service = {
+export const service = translate('service', {
   end: 'Take her out of service…',
   question:
     'Sold, laid up or broken up? She will be in no list of the fleet, her alerts end, and she ' +
@@ -37,4 +39,4 @@ export const service = {
   list: 'Vessels out of service',
   none: 'All vessels are in service.',
   since: (since: string) => `since ${since}`,
-};
+});

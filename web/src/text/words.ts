@@ -1,14 +1,15 @@
 /** Words for what the server names by a key, where many pages show it. */
 
 import type { AlertCause, Severity, Urgency } from '../api/types';
+import { translate } from './language';
 
-export const severity = {
+export const severity = translate('severity', {
   notice: 'Notice',
   warning: 'Warning',
   critical: 'Critical',
-} satisfies Record<Severity, string>;
+} satisfies Record<Severity, string>);
 
-export const alertCause = {
+export const alertCause = translate('alertCause', {
   deviation_over_limit: 'Deviation over the limit',
   reference_fault: 'Gyro and satellite compass disagree',
   compass_fault: 'The compass is at fault',
@@ -28,25 +29,25 @@ export const alertCause = {
   cloned_agent: 'Two computers send as one agent',
   no_model: 'No model of the compass yet',
   wide_band: 'The model is too uncertain',
-} satisfies Record<AlertCause, string>;
+} satisfies Record<AlertCause, string>);
 
-export const urgency = {
+export const urgency = translate('urgency', {
   routine: 'Routine',
   unknown: 'Not known',
   soon: 'Soon',
   urgent: 'Urgent',
   overdue: 'Overdue',
-} satisfies Record<Urgency, string>;
+} satisfies Record<Urgency, string>);
 
 /** How large a deviation is. */
-export const grade = {
+export const grade = translate('grade', {
   small: 'small',
   notable: 'notable',
   large: 'large',
-};
+});
 
-export const gradeLong = {
+export const gradeLong = translate('gradeLong', {
   small: 'Below 3° on every heading',
   notable: 'Between 3° and 5° on some heading',
   large: 'Above 5° on some heading: most flags ask for an adjustment',
-};
+});
