@@ -240,7 +240,7 @@ export const alerts = {
       await signIn(page, settings);
       await page.getByRole('link', { name: /^Alerts/ }).click();
       await page.getByRole('link', { name: 'Webhooks' }).click();
-      await page.getByText('No program is told of alerts yet').waitFor();
+      await page.getByText('No program or chat hears of alerts yet').waitFor();
       await page.getByRole('button', { name: 'Add a webhook' }).click();
       const made = page.getByRole('button', { name: 'Make the webhook' });
       await made.click();
@@ -263,7 +263,7 @@ export const alerts = {
       await shoot('webhooks-phone', { fullPage: true });
       await card.getByRole('button', { name: 'Remove' }).click();
       await card.getByRole('button', { name: 'Remove the webhook' }).click();
-      await page.getByText('No program is told of alerts yet').waitFor();
+      await page.getByText('No program or chat hears of alerts yet').waitFor();
     },
   },
 
