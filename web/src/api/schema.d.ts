@@ -7557,7 +7557,7 @@ export interface components {
         /** @description Message in words, for people. */
         MessageWords: {
             /**
-             * @description What it is about, in a line.
+             * @description Subject of the message, in a line.
              * @example Nao Victoria: warning, deviation over the limit
              */
             headline: string;

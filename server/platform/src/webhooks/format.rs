@@ -28,7 +28,7 @@ pub(super) enum Format {
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = MessageWords)]
 pub struct Words {
-    /// What it is about, in a line.
+    /// Subject of the message, in a line.
     #[schema(example = "Nao Victoria: warning, deviation over the limit")]
     pub headline: String,
     /// More of it.

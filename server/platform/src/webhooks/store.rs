@@ -184,7 +184,7 @@ pub(super) async fn change(
     Ok(())
 }
 
-/// Where and how the messages of a webhook are sent.
+/// Address of a webhook, and the form of its messages.
 pub(super) struct Address {
     pub(super) url: String,
     pub(super) secret: String,
