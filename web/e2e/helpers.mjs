@@ -109,6 +109,20 @@ export async function limit(page, id, limits) {
     data: { ...found, alerts: { band95_deg: 45, ...limits } },
   });
   assert.ok(answer.ok(), await answer.text());
+  // Two limits that are judged at once would be one: what was cleared by hand is not raised again.
+  await analysed(page);
+}
+
+/** Waits until no analysis is queued or under way. */
+async function analysed(page) {
+  for (let tries = 0; tries < 150; tries += 1) {
+    const metrics = await (await page.request.get('/metrics')).text();
+    const jobs = [...metrics.matchAll(/^binnacle_jobs\{state="(?:queued|running)"\} (\d+)/gm)];
+    assert.equal(jobs.length, 2, metrics);
+    if (jobs.every(([, count]) => count === '0')) return;
+    await page.waitForTimeout(100);
+  }
+  assert.fail('the analyses do not end');
 }
 
 export async function fitsItsWidth(page) {
