@@ -2,7 +2,8 @@
 //!
 //! Invariants: each one is in the server's own log. Each failed attempt has an audit line, and of
 //! those only turned away a network has one a minute for each reason, whatever it sends, so that
-//! nobody can fill the audit log. What was typed is kept only if it has the form of an e-mail address: it may be a password.
+//! nobody can fill the audit log. What was typed is kept only if it has the form of an e-mail
+//! address: it may be a password.
 
 use crate::db::{self, Tx, row};
 use crate::ids::{FirmId, OperatorId};

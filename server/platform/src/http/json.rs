@@ -245,14 +245,7 @@ mod tests {
             assert_eq!(remark("text", seen, 200).unwrap(), seen);
             assert!(text("name", seen).is_err(), "{seen:?}");
         }
-        for refused in [
-            "",
-            " ",
-            "\u{200b}\u{200d}",
-            "one\ntwo",
-            "Nao\u{202e}",
-            "longer",
-        ] {
+        for refused in ["", " ", "\u{200b}\u{200d}", "a\nb", "Nao\u{202e}", "longer"] {
             assert!(remark("text", refused, 5).is_err(), "{refused:?}");
         }
     }

@@ -1,7 +1,7 @@
 //! Counts of the requests of each caller, by which their rate is limited.
 //!
-//! Invariants: each process counts for itself, in windows of a minute or a day. A session or a token is a
-//! caller only once it was accepted, so that nobody is a new caller with each invented one.
+//! Invariants: each process counts for itself, in windows of a minute or a day. A session or a token
+//! is a caller only once it was accepted, so that nobody is a new caller with each invented one.
 
 pub mod letters;
 

@@ -99,6 +99,15 @@ async fn the_operators_webhook_gets_every_response(server: TestServer) {
     assert_eq!(answered["entry"]["kind"], "accepted");
     assert_eq!(answered["entry"]["firm_id"], parties.firms[1].0.to_string());
     assert_eq!(answered["work_order"]["state"], "accepted");
+    let words = &answered["words"];
+    let vessel = answered["work_order"]["vessel_name"].as_str().unwrap();
+    assert_eq!(words["headline"], format!("{vessel}: work order, accepted"));
+    assert_eq!(words["path"], format!("/work-orders/{}", parties.order));
+    let text = words["text"].as_str().unwrap();
+    for part in ["compass_name", "port", "planned_at_local"] {
+        let said = answered["work_order"][part].as_str().unwrap();
+        assert!(text.contains(said), "{part}: {text}");
+    }
     server.finish().await;
 }
 
